@@ -1,0 +1,48 @@
+"""The exception tree. A message says the rule, the offending value and the remedy.
+
+Each class also derives from the builtin that fits, so that callers who know nothing of Partwise catch it too.
+"""
+
+
+class PartwiseError(Exception):
+    """Anything Partwise refuses to do. The command line prints it as one line and exits non-zero."""
+
+
+class MeshError(PartwiseError, ValueError):
+    """A mesh breaks a rule: wrong shape, NaN, an index out of range, no faces."""
+
+
+class DegenerateMeshError(MeshError):
+    """A mesh is too flat, small or empty for what was asked: no area, a single point."""
+
+
+class FileFormatError(PartwiseError, ValueError):
+    """A file is missing, empty, truncated or not what its name says."""
+
+
+class LabelError(PartwiseError, ValueError):
+    """Labels do not fit: wrong length, another mesh, a part that is not in the schema."""
+
+
+class ParameterError(PartwiseError, ValueError):
+    """A parameter is outside its documented range."""
+
+
+class ConfigError(PartwiseError, ValueError):
+    """`partwise.toml` has an unknown key, a wrong type or a value out of range."""
+
+
+class StoreError(PartwiseError, OSError):
+    """A store cannot be reached, is full, or holds something unexpected."""
+
+
+class NotFoundError(PartwiseError, LookupError):
+    """A shape, collection, model or key that was asked for is not there."""
+
+
+class ConflictError(PartwiseError, ValueError):
+    """What was asked contradicts what is already committed."""
+
+
+class NotEnoughDataError(PartwiseError, ValueError):
+    """Too few shapes or labels for what was asked."""

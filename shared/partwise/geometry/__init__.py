@@ -1,0 +1,1 @@
+"""Discrete geometry on triangle meshes, one operator a file."""
