@@ -70,7 +70,7 @@ class TriMesh:
 
 def _frozen_copy(values: np.ndarray, dtype: type) -> np.ndarray:
     try:
-        array = np.array(values, dtype=dtype, order="C")
+        array: np.ndarray = np.array(values, dtype=dtype, order="C")
     except (TypeError, ValueError) as error:
         raise MeshError(f"mesh arrays must be numeric but numpy says: {error}; check the file's contents") from error
     array.flags.writeable = False

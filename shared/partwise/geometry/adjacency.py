@@ -24,7 +24,7 @@ class EdgeAdjacency:
 
 
 def edge_adjacency(mesh: TriMesh) -> EdgeAdjacency:
-    """Face pairs across each edge. An edge of q > 2 faces (non-manifold) pairs those consecutive by index, q−1 in all."""
+    """Face pairs across each edge. An edge of q > 2 faces pairs those consecutive by index, q−1 in all."""
     corners = mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     edges = np.sort(corners, axis=1)
     owner = np.repeat(np.arange(mesh.n_faces), 3)
