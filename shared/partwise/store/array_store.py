@@ -1,0 +1,136 @@
+"""`ArrayStore`: arrays that a machine can make again, in write-once blocks, beside plain objects and staging.
+
+A block holds the arrays of many shapes, one ragged array per quantity. Writing a block shows nothing to anybody: it
+becomes visible when its name is committed to the catalog, and one that never is becomes an orphan for `gc`. Keys and
+names are relative, made of letters, digits, `.`, `_`, `-` and `/`. Methods raise `StoreError` when the store cannot be
+reached, is full, or holds something damaged, and `NotFoundError` for an object that is not there.
+"""
+
+from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from datetime import timedelta
+from enum import StrEnum
+from typing import Protocol
+
+import numpy as np
+
+from partwise.errors import ParameterError
+
+
+class Domain(StrEnum):
+    """What the rows of a quantity are: one per face, one per vertex, or a single one for the shape."""
+
+    FACE = "face"
+    VERTEX = "vertex"
+    SHAPE = "shape"
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One array of a block: for each shape (rows, *width) of `dtype`; a None in `width` is settled when written.
+
+    For a shape-domain quantity each shape hands in and gets back its one row, of shape `width`.
+
+    Raises
+    ------
+    ParameterError : a dtype numpy does not know, a width below 1.
+    """
+
+    name: str
+    domain: Domain
+    dtype: str
+    width: tuple[int | None, ...] = ()
+
+    def __post_init__(self) -> None:
+        try:
+            np.dtype(self.dtype)
+        except TypeError as error:
+            raise ParameterError(f"quantity {self.name!r} must have a numpy dtype but has {self.dtype!r}") from error
+        if any(extent is not None and extent < 1 for extent in self.width):
+            raise ParameterError(f"quantity {self.name!r} must have positive widths but has {self.width}")
+
+
+@dataclass(frozen=True, slots=True)
+class BlockKind:
+    """What the blocks of a stage hold. Raises `ParameterError` for no quantities or a name twice."""
+
+    name: str
+    quantities: tuple[Quantity, ...]
+
+    def __post_init__(self) -> None:
+        names = [quantity.name for quantity in self.quantities]
+        if not names or len(set(names)) != len(names):
+            raise ParameterError(f"block kind {self.name!r} must have quantities of different names but has {names}")
+
+
+@dataclass(frozen=True, slots=True)
+class BlockAddress:
+    """A block as written: its unique name, its size as stored, the SHA-256 (hex) over all of its objects."""
+
+    name: str
+    n_shapes: int
+    n_bytes: int
+    checksum: str
+
+
+class ArrayStore(Protocol):
+    def write_block(self, kind: BlockKind, shapes: Sequence[Mapping[str, np.ndarray]]) -> BlockAddress:
+        """Write the arrays of each shape under a fresh name `blocks/<kind>/<uuid>`; row i is shape i.
+
+        Raises `ParameterError` if there are no shapes, or a shape lacks a quantity, has one too many, or has one of
+        another dtype, width or row count than its kind and its other quantities say.
+        """
+        ...
+
+    def read(self, block_name: str, row: int, quantity: str) -> np.ndarray:
+        """One quantity of one shape, reading little more than its own rows."""
+        ...
+
+    def read_many(self, block_name: str, row: int, quantities: Sequence[str]) -> Mapping[str, np.ndarray]:
+        """Several quantities of one shape."""
+        ...
+
+    def verify(self, address: BlockAddress) -> None:
+        """Read the whole block and raise `StoreError` unless it is as it was written."""
+        ...
+
+    def block_names(self) -> Sequence[str]:
+        """Every block in the store, visible or not, sorted."""
+        ...
+
+    def orphans(self, visible: AbstractSet[str], older_than: timedelta) -> Sequence[str]:
+        """Blocks that are not visible and whose writing began longer ago than the grace given."""
+        ...
+
+    def delete_block(self, name: str) -> None:
+        """Delete a block; nothing happens if it is not there."""
+        ...
+
+    def put_bytes(self, key: str, data: bytes) -> None:
+        """Write an object: afterwards it is there whole and durable; on error the previous state remains."""
+        ...
+
+    def get_bytes(self, key: str) -> bytes: ...
+
+    def exists(self, key: str) -> bool: ...
+
+    def delete(self, key: str) -> None:
+        """Delete an object; nothing happens if it is not there."""
+        ...
+
+    def list(self, prefix: str) -> Sequence[str]:
+        """Keys of the objects in the folder `prefix` and below, sorted."""
+        ...
+
+    def stage(self, key: str, arrays: Mapping[str, np.ndarray]) -> None:
+        """Put named arrays into staging as one safetensors object, replacing what was there."""
+        ...
+
+    def read_staged(self, key: str) -> Mapping[str, np.ndarray]: ...
+
+    def staged_keys(self, prefix: str = "") -> Sequence[str]:
+        """Keys in staging, of a folder if given, sorted."""
+        ...
+
+    def delete_staged(self, key: str) -> None: ...
