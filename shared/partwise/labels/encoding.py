@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import UInt16
-from numcodecs import Zstd
+from numcodecs import Zstd  # type: ignore[import-untyped]  # ships no types
 
 from partwise.errors import LabelError
 

@@ -1,4 +1,4 @@
-"""Default part colours that stay apart for colour-blind eyes: Okabe & Ito's seven, then Tol's muted scheme, then hues."""
+"""Default part colours that stay apart for colour-blind eyes: Okabe & Ito's, then Tol's muted ones, then hues."""
 
 import colorsys
 

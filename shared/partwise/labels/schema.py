@@ -1,7 +1,7 @@
 """`Part` and `PartSchema`: which parts the faces of a collection may be labelled with.
 
-Part ids are never reused: 0 means unlabelled, and a part that was removed keeps its id for ever. A schema has a version;
-adding or removing a part makes the next version, renaming and recolouring do not.
+Part ids are never reused: 0 means unlabelled, and a part that was removed keeps its id for ever. A schema has a
+version; adding or removing a part makes the next version, renaming and recolouring do not.
 """
 
 import re
@@ -66,8 +66,8 @@ class PartSchema:
     def __post_init__(self) -> None:
         if self.version < 1:
             raise LabelError(f"a schema version must be at least 1 but is {self.version}")
-        for what, values in (("name", [p.name for p in self.parts]), ("id", [p.id for p in self.parts])):
-            twice = sorted({str(value) for value in values if values.count(value) > 1})
+        for what, values in (("name", list(self.names)), ("id", [str(part_id) for part_id in self.ids])):
+            twice = sorted({value for value in values if values.count(value) > 1})
             if twice:
                 raise LabelError(f"each part {what} must occur once but these occur twice: {', '.join(twice)}")
 

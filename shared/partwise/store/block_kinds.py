@@ -1,6 +1,6 @@
 """The block kinds of the standard stages. Vertices float32, faces uint32, histograms quantised (see `quantise`)."""
 
-from partwise.store.array_store import BlockKind, Domain, Quantity
+from partwise.store.blocks import BlockKind, Domain, Quantity
 
 N_BINS = 256
 """Bins of a shape context or a spin image, 16 × 16."""

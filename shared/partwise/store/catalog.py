@@ -1,8 +1,8 @@
 """`Catalog`: everything a person made, and what the machine has done so far, as rows.
 
-Each method is one transaction: when it returns, it is committed. Lists are pages in order of a key: pass the last key of
-one page as `after` to get the next; an empty page is the end. Methods raise `NotFoundError` for an id or a name that is
-not there and `StoreError` when the database cannot be reached or written, beside what they name themselves.
+Each method is one transaction: when it returns, it is committed. Lists are pages in order of a key: pass the last key
+of one page as `after` to get the next; an empty page is the end. Methods raise `NotFoundError` for an id or a name that
+is not there and `StoreError` when the database cannot be reached or written, beside what they name themselves.
 """
 
 from collections.abc import Collection as SizedIterable
@@ -152,8 +152,8 @@ class StageCatalog(Protocol):
     ) -> int:
         """Make a written block visible and return its id: block, done runs, scores and meshes in one transaction.
 
-        Older done runs of the same shape and stage are superseded and its failed runs of that stage are cleared. A score
-        replaces the shape's score of that name unless the one on record comes from a newer model.
+        Older done runs of the same shape and stage are superseded and its failed runs of that stage are cleared. A
+        score replaces the shape's score of that name unless the one on record comes from a newer model.
 
         Raises `ConflictError` if the block's name is on record, `ParameterError` for a row outside the block or a score
         that is not finite.
@@ -203,7 +203,7 @@ class StageCatalog(Protocol):
         ...
 
     def delete_blocks(self, names: SizedIterable[str]) -> None:
-        """Forget blocks and their superseded runs. Raises `ConflictError` if any of them is in use; nothing is deleted."""
+        """Forget blocks and their superseded runs. `ConflictError` if one is in use: then nothing is deleted."""
         ...
 
 
