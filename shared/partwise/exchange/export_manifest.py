@@ -1,0 +1,177 @@
+"""The manifest beside an export: which files, of which meshes, labelled how, under which schema, by which model."""
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path, PurePosixPath
+
+from partwise.errors import FileFormatError, ParameterError
+from partwise.exchange.label_files import read_label_text
+from partwise.io.atomic import write_atomically
+
+FORMAT = "partwise.export"
+FORMAT_VERSION = 1
+SEGMENTATIONS = ("confirmed", "refined", "predicted")
+_SHA256 = re.compile(r"[0-9a-f]{64}")
+_COLOUR = re.compile(r"#[0-9a-f]{6}")
+
+
+@dataclass(frozen=True, slots=True)
+class ManifestPart:
+    """A part of the schema; colour as #rrggbb in lower case. Id −1 is no part: it marks unlabelled faces."""
+
+    id: int
+    name: str
+    colour: str
+
+    def __post_init__(self) -> None:
+        if self.id < 0 or not self.name:
+            raise ParameterError(f"a part must have an id ≥ 0 and a name but has {self.id} and {self.name!r}; fix both")
+        if not _COLOUR.fullmatch(self.colour):
+            raise ParameterError(
+                f"a colour must be like #1f77b4 but part {self.name!r} has {self.colour!r}; rewrite it"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class ManifestFile:
+    """A file of the export: path relative to the manifest with forward slashes, and SHA-256 in hex."""
+
+    path: str
+    sha256: str
+
+    def __post_init__(self) -> None:
+        path = PurePosixPath(self.path)
+        if not self.path or path.is_absolute() or ".." in path.parts or "\\" in self.path:
+            raise ParameterError(f"a path must be relative, without .. or backslash, but is {self.path!r}; shorten it")
+        _check_hash(self.sha256, f"the hash of {self.path}")
+
+
+@dataclass(frozen=True, slots=True)
+class ManifestShape:
+    """One shape: its source key, its hashes and its files.
+
+    mesh_hash : `TriMesh.content_hash` of the mesh that the labels belong to.
+    source_hash : SHA-256 of the ingested source file.
+    faces_per_part : part id → number of faces with it; −1 for unlabelled. Sums to `n_faces`.
+    """
+
+    source_key: str
+    mesh_hash: str
+    source_hash: str
+    n_faces: int
+    faces_per_part: dict[int, int]
+    files: tuple[ManifestFile, ...]
+
+    def __post_init__(self) -> None:
+        _check_hash(self.mesh_hash, f"mesh_hash of {self.source_key}")
+        _check_hash(self.source_hash, f"source_hash of {self.source_key}")
+        if min(self.faces_per_part.values(), default=0) < 0 or sum(self.faces_per_part.values()) != self.n_faces:
+            raise ParameterError(
+                f"faces_per_part of {self.source_key} must sum to {self.n_faces} faces but are {self.faces_per_part}; "
+                "count unlabelled faces under −1"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class ExportManifest:
+    """Everything needed to know what an export is and to check that it is whole.
+
+    segmentation : "confirmed", "refined" or "predicted".
+    model_version : of predicted and refined labels; None for confirmed ones.
+
+    Raises
+    ------
+    ParameterError : unknown segmentation, no model where there must be one, or parts that a shape counts but the
+        schema lacks.
+    """
+
+    partwise_version: str
+    collection: str
+    schema_version: int
+    parts: tuple[ManifestPart, ...]
+    segmentation: str
+    model_version: str | None
+    shapes: tuple[ManifestShape, ...]
+
+    def __post_init__(self) -> None:
+        if self.segmentation not in SEGMENTATIONS:
+            raise ParameterError(
+                f"segmentation must be one of {SEGMENTATIONS} but is {self.segmentation!r}; choose one"
+            )
+        if (self.model_version is None) != (self.segmentation == "confirmed"):
+            raise ParameterError(
+                f"predicted and refined labels must name their model, confirmed ones none, but {self.segmentation} "
+                f"labels have {self.model_version!r}"
+            )
+        known = {part.id for part in self.parts} | {-1}
+        if len(known) != len(self.parts) + 1:
+            raise ParameterError(
+                f"part ids must be distinct but are {[part.id for part in self.parts]}; never reuse ids"
+            )
+        for shape in self.shapes:
+            if strangers := shape.faces_per_part.keys() - known:
+                raise ParameterError(
+                    f"{shape.source_key} has parts {sorted(strangers)} that the schema lacks; export under its version"
+                )
+
+    def to_json(self) -> str:
+        """The manifest as indented JSON with a format name and version."""
+        return json.dumps({"format": FORMAT, "format_version": FORMAT_VERSION, **asdict(self)}, indent=2) + "\n"
+
+
+def write_manifest(path: Path | str, manifest: ExportManifest) -> None:
+    """Writes the manifest; StoreError if that fails. Write it last, so that it vouches for files that are there."""
+    write_atomically(path, manifest.to_json().encode())
+
+
+def read_manifest(path: Path | str, data: bytes | None = None) -> ExportManifest:
+    """Reads a manifest.
+
+    Raises
+    ------
+    FileFormatError : missing, not JSON, not a manifest, of a newer version, or inconsistent.
+    """
+    text = read_label_text(path, data)
+    try:
+        document = json.loads(text)
+        if document["format"] != FORMAT or document["format_version"] != FORMAT_VERSION:
+            raise FileFormatError(
+                f"{path}: a manifest must be {FORMAT} {FORMAT_VERSION} but is {document['format']} "
+                f"{document['format_version']}; update partwise or export again"
+            )
+        fields = {key: value for key, value in document.items() if key not in ("format", "format_version")}
+        fields["parts"] = tuple(ManifestPart(**part) for part in document["parts"])
+        fields["shapes"] = tuple(_shape(shape) for shape in document["shapes"])
+        return ExportManifest(**fields)
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError, ParameterError) as error:
+        raise FileFormatError(f"{path}: a manifest must be as partwise writes it but {error}; export again") from error
+
+
+def damaged_files(manifest: ExportManifest, folder: Path) -> tuple[str, ...]:
+    """Paths of files that are missing from `folder` or whose hash differs."""
+    files: Iterable[ManifestFile] = (file for shape in manifest.shapes for file in shape.files)
+    return tuple(
+        file.path
+        for file in files
+        if not (folder / file.path).is_file() or file_sha256(folder / file.path) != file.sha256
+    )
+
+
+def file_sha256(path: Path) -> str:
+    """SHA-256 of a file's bytes, hex."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _shape(fields: dict[str, object]) -> ManifestShape:
+    faces_per_part = {int(part): count for part, count in fields["faces_per_part"].items()}  # type: ignore[attr-defined]
+    files = tuple(ManifestFile(**file) for file in fields["files"])  # type: ignore[attr-defined]
+    return ManifestShape(**{**fields, "faces_per_part": faces_per_part, "files": files})  # type: ignore[arg-type]
+
+
+def _check_hash(value: str, what: str) -> None:
+    if not _SHA256.fullmatch(value):
+        raise ParameterError(f"{what} must be SHA-256 in lower-case hex but is {value!r}; compute it from the bytes")
