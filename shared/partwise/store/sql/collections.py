@@ -1,0 +1,183 @@
+"""Collections, their versioned part schemas, people, and the audit trail."""
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, Row, func, insert, or_, select, update
+
+from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
+from partwise.labels.palette import default_colour
+from partwise.labels.schema import MAX_PART_ID, Part, PartSchema
+from partwise.store import tables as t
+from partwise.store.records import AuditEntry, Collection, Person
+
+
+def create_collection(
+    connection: Connection, name: str, part_names: Sequence[str], settings: Mapping[str, Any], now: datetime
+) -> Collection:
+    if not name or name != name.strip():
+        raise ParameterError(f"a collection's name must be non-empty without spaces around it but is {name!r}")
+    taken = connection.execute(select(t.collection.c.id).where(t.collection.c.name == name)).first()
+    if taken:
+        raise ConflictError(f"each collection must have its own name but {name!r} is taken; choose another")
+    parts = tuple(Part(i, part_name, default_colour(i)) for i, part_name in enumerate(part_names, start=1))
+    schema = PartSchema(1, parts)  # validates the names before anything is written
+    values: dict[str, Any] = {"name": name, "settings": dict(settings), "schema_version": 1, "created_at": now}
+    collection_id = connection.execute(insert(t.collection).values(values).returning(t.collection.c.id)).scalar_one()
+    if parts:
+        connection.execute(insert(t.part), [_part_row(collection_id, part, 1) for part in schema.parts])
+    return Collection(id=collection_id, **values)
+
+
+def _part_row(collection_id: int, part: Part, version: int) -> dict[str, Any]:
+    return {
+        "collection_id": collection_id,
+        "id": part.id,
+        "name": part.name,
+        "colour": part.colour,
+        "gloss": part.gloss,
+        "ordinal": part.id,
+        "schema_version_added": version,
+        "schema_version_removed": None,
+    }
+
+
+def get_collection(connection: Connection, name: str) -> Collection:
+    row = connection.execute(select(t.collection).where(t.collection.c.name == name)).first()
+    if row is None:
+        known = connection.execute(select(t.collection.c.name).order_by(t.collection.c.name).limit(10)).scalars().all()
+        raise NotFoundError(f"there is no collection {name!r}; there are: {', '.join(known) or 'none yet'}")
+    return _collection(row)
+
+
+def list_collections(connection: Connection) -> Sequence[Collection]:
+    return [_collection(row) for row in connection.execute(select(t.collection).order_by(t.collection.c.name))]
+
+
+def _collection(row: Row[Any]) -> Collection:
+    return Collection(**row._mapping)
+
+
+def schema_version(connection: Connection, collection_id: int, *, for_update: bool = False) -> int:
+    """The current schema version; `for_update` makes other writers wait until this transaction ends."""
+    query = select(t.collection.c.schema_version).where(t.collection.c.id == collection_id)
+    version = connection.execute(query.with_for_update() if for_update else query).scalar()
+    if version is None:
+        raise NotFoundError(f"there is no collection with id {collection_id}")
+    return version
+
+
+def parts(connection: Connection, collection_id: int, version: int | None = None) -> PartSchema:
+    current = schema_version(connection, collection_id)
+    version = current if version is None else version
+    if not 1 <= version <= current:
+        raise LabelError(f"the schema version must be 1 to {current} but is {version}; was another collection meant?")
+    query = (
+        select(t.part.c.id, t.part.c.name, t.part.c.colour, t.part.c.gloss)
+        .where(t.part.c.collection_id == collection_id, t.part.c.schema_version_added <= version)
+        .where(or_(t.part.c.schema_version_removed.is_(None), t.part.c.schema_version_removed > version))
+        .order_by(t.part.c.ordinal)
+    )
+    rows = connection.execute(query).all()
+    return PartSchema(version, _distinct_names([Part(**row._mapping) for row in rows]))
+
+
+def _distinct_names(parts_of_version: Sequence[Part]) -> tuple[Part, ...]:
+    """Parts of an older version that were renamed to a name in use by another get their id behind the name."""
+    names = [part.name for part in parts_of_version]
+    return tuple(
+        part if names.count(part.name) == 1 else Part(part.id, f"{part.name[:56]} ({part.id})", part.colour, part.gloss)
+        for part in parts_of_version
+    )
+
+
+def add_part(connection: Connection, collection_id: int, name: str, colour: str | None, gloss: str) -> PartSchema:
+    version = schema_version(connection, collection_id, for_update=True) + 1
+    _refuse_taken_name(connection, collection_id, name, None)
+    last = connection.execute(select(func.max(t.part.c.id)).where(t.part.c.collection_id == collection_id)).scalar()
+    part_id = (last or 0) + 1
+    if part_id > MAX_PART_ID:
+        raise LabelError(f"a collection can have {MAX_PART_ID} parts in its life and has had them; start another")
+    part = Part(part_id, name, colour or default_colour(part_id), gloss)
+    connection.execute(insert(t.part).values(_part_row(collection_id, part, version)))
+    _set_version(connection, collection_id, version)
+    return parts(connection, collection_id)
+
+
+def update_part(
+    connection: Connection, collection_id: int, part_id: int, name: str | None, colour: str | None, gloss: str | None
+) -> PartSchema:
+    schema_version(connection, collection_id, for_update=True)
+    old = parts(connection, collection_id).part(part_id)
+    new = Part(
+        part_id,
+        old.name if name is None else name,
+        old.colour if colour is None else colour,
+        old.gloss if gloss is None else gloss,
+    )
+    _refuse_taken_name(connection, collection_id, new.name, part_id)
+    connection.execute(
+        update(t.part)
+        .where(t.part.c.collection_id == collection_id, t.part.c.id == part_id)
+        .values(name=new.name, colour=new.colour, gloss=new.gloss)
+    )
+    return parts(connection, collection_id)
+
+
+def remove_part(connection: Connection, collection_id: int, part_id: int) -> PartSchema:
+    version = schema_version(connection, collection_id, for_update=True) + 1
+    parts(connection, collection_id).part(part_id)  # refuses an unknown or already removed part
+    connection.execute(
+        update(t.part)
+        .where(t.part.c.collection_id == collection_id, t.part.c.id == part_id)
+        .values(schema_version_removed=version)
+    )
+    _set_version(connection, collection_id, version)
+    return parts(connection, collection_id)
+
+
+def _refuse_taken_name(connection: Connection, collection_id: int, name: str, part_id: int | None) -> None:
+    for part in parts(connection, collection_id).parts:
+        if part.name == name and part.id != part_id:
+            raise ConflictError(f"each part must have its own name but {name!r} is part {part.id}; choose another")
+
+
+def _set_version(connection: Connection, collection_id: int, version: int) -> None:
+    connection.execute(update(t.collection).where(t.collection.c.id == collection_id).values(schema_version=version))
+
+
+def add_person(connection: Connection, name: str, now: datetime) -> Person:
+    if not name or name != name.strip():
+        raise ParameterError(f"a person's name must be non-empty without spaces around it but is {name!r}")
+    if connection.execute(select(t.person.c.id).where(t.person.c.name == name)).first():
+        raise ConflictError(f"each person must have their own name but {name!r} is taken; choose another")
+    values = {"name": name, "created_at": now}
+    return Person(
+        id=connection.execute(insert(t.person).values(values).returning(t.person.c.id)).scalar_one(),
+        name=name,
+        created_at=now,
+    )
+
+
+def get_person(connection: Connection, name: str) -> Person:
+    row = connection.execute(select(t.person).where(t.person.c.name == name)).first()
+    if row is None:
+        raise NotFoundError(f"there is no person {name!r}; add them first")
+    return Person(**row._mapping)
+
+
+def list_people(connection: Connection) -> Sequence[Person]:
+    return [Person(**row._mapping) for row in connection.execute(select(t.person).order_by(t.person.c.name))]
+
+
+def append_audit(
+    connection: Connection, actor: str, action: str, subject: str, detail: Mapping[str, Any], now: datetime
+) -> None:
+    entry = {"at": now, "actor": actor, "action": action, "subject": subject, "detail": dict(detail)}
+    connection.execute(insert(t.audit).values(entry))
+
+
+def audit(connection: Connection, after: int, limit: int) -> Sequence[AuditEntry]:
+    query = select(t.audit).where(t.audit.c.id > after).order_by(t.audit.c.id).limit(limit)
+    return [AuditEntry(**row._mapping) for row in connection.execute(query)]
