@@ -1,0 +1,1 @@
+"""Procedural collections with ground truth, clean and dirty."""

@@ -1,0 +1,188 @@
+"""The dirty twin of a shape: its pieces contoured apart, as CAD soups are, and then damaged; labels stay right.
+
+Pieces run through each other; some lie open, inside out, unwelded or doubled; there are T-junctions, edges with three
+faces and faces without area.
+"""
+
+from dataclasses import dataclass
+
+import fast_simplification
+import numpy as np
+from jaxtyping import Int
+
+from partwise.errors import DegenerateMeshError
+from partwise.geometry.adjacency import edge_components
+from partwise.geometry.faces import face_areas, face_centroids
+from partwise.mesh import TriMesh
+from partwise.simulate.blueprint import Blueprint
+from partwise.simulate.contour import contour, grid_over, tight_bounds
+from partwise.simulate.realise import part_of_piece
+
+_CELLS_PER_THICKNESS = 4.0
+_N_CELLS = (14, 130)  # along a piece's longest side
+_MIN_PIECE_FACES = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Soup:
+    """Faces, their labels, and the vertices they use. Damage makes a new one."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    labels: np.ndarray
+
+
+def realise_as_soup(
+    blueprint: Blueprint, part_names: tuple[str, ...], n_faces: int, rng: np.random.Generator
+) -> tuple[TriMesh, Int[np.ndarray, " m"]]:
+    """A multi-component, open, non-manifold mesh of `n_faces` faces, and each face's part index, (m,) int64.
+
+    Raises
+    ------
+    DegenerateMeshError : no piece can be contoured.
+    """
+    soup = _assemble(blueprint, part_names, int(0.9 * n_faces), rng)
+    for damage in (_tear, _open_pieces, _flip, _unweld, _duplicate, _add_fins, _add_slivers):
+        soup = damage(soup, rng)
+    soup = _to_count(soup, n_faces, rng)
+    used, faces = np.unique(soup.faces, return_inverse=True)
+    return TriMesh(soup.vertices[used], faces.reshape(-1, 3)), soup.labels
+
+
+def _assemble(blueprint: Blueprint, part_names: tuple[str, ...], n_faces: int, rng: np.random.Generator) -> _Soup:
+    """Each piece contoured and reduced by itself, side by side."""
+    parts = part_of_piece(blueprint, part_names)
+    fine = [(part, _contour_piece(blueprint, index)) for index, part in enumerate(parts)]
+    meshes = [(part, mesh) for part, mesh in fine if mesh is not None]
+    if not meshes:
+        raise DegenerateMeshError("a soup needs at least one piece that a grid can see; is the blueprint empty?")
+    # Modellers spend faces unevenly: a leg may be finer than a seat.
+    weight = np.array([np.sqrt(face_areas(mesh).sum()) for _, mesh in meshes]) * rng.lognormal(0.0, 0.6, len(meshes))
+    wanted = np.maximum(n_faces * weight / weight.sum(), _MIN_PIECE_FACES).astype(int)
+    vertices, faces, labels, offset = [], [], [], 0
+    for (part, mesh), n_wanted in zip(meshes, wanted, strict=True):
+        v, f = mesh.vertices, mesh.faces
+        if n_wanted < len(f):
+            v, f = fast_simplification.simplify(v.copy(), f.copy(), target_count=int(n_wanted), agg=4)[:2]
+        vertices.append(v)
+        faces.append(f.astype(np.int64) + offset)
+        labels.append(np.full(len(f), part, dtype=np.int64))
+        offset += len(v)
+    return _Soup(np.concatenate(vertices), np.concatenate(faces), np.concatenate(labels))
+
+
+def _contour_piece(blueprint: Blueprint, index: int) -> TriMesh | None:
+    def field(points: np.ndarray) -> np.ndarray:
+        return blueprint.piece_distance(index, points)
+
+    try:
+        bounds = tight_bounds(field, blueprint.piece_bounds(index))
+        longest = float((bounds[1] - bounds[0]).max())
+        thickness = blueprint.pieces[index].solid.thickness
+        spacing = np.clip(thickness / _CELLS_PER_THICKNESS, longest / _N_CELLS[1], longest / _N_CELLS[0])
+        return contour(field, grid_over(bounds, float(spacing)))
+    except DegenerateMeshError:
+        return None
+
+
+def _tear(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """A few round holes, each of up to 2 % of the faces."""
+    keep = np.ones(len(soup.faces), dtype=bool)
+    centroids = face_centroids(TriMesh(soup.vertices, soup.faces))
+    for _ in range(int(rng.integers(2, 7))):
+        middle = int(rng.integers(len(soup.faces)))
+        mine = np.flatnonzero(soup.labels == soup.labels[middle])
+        gap = np.linalg.norm(centroids[mine] - centroids[middle], axis=1)
+        n_gone = min(int(len(soup.faces) * rng.uniform(0.001, 0.02)) + 1, len(mine) // 4)
+        keep[mine[np.argsort(gap, kind="stable")[:n_gone]]] = False
+    return _Soup(soup.vertices, soup.faces[keep], soup.labels[keep])
+
+
+def _open_pieces(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """Some pieces lose what faces one way (an open bottom), unless that is most of them."""
+    mesh = TriMesh(soup.vertices, soup.faces)
+    corners = mesh.vertices[mesh.faces]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    steepness = cross[:, 1] / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)
+    piece = _pieces_of(soup)
+    chosen = np.flatnonzero(rng.random(int(piece.max()) + 1) < 0.25)
+    gone = np.isin(piece, chosen) & (steepness < -0.9)
+    share = np.bincount(piece, weights=gone) / np.bincount(piece)
+    gone &= share[piece] < 0.35
+    return _Soup(soup.vertices, soup.faces[~gone], soup.labels[~gone])
+
+
+def _flip(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """About a fifth of the pieces, and one face in two hundred, turn inside out."""
+    piece = _pieces_of(soup)
+    turned = (rng.random(int(piece.max()) + 1) < 0.2)[piece] ^ (rng.random(len(piece)) < 0.005)
+    return _Soup(soup.vertices, np.where(turned[:, None], soup.faces[:, ::-1], soup.faces), soup.labels)
+
+
+def _unweld(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """Some pieces become triangles with vertices of their own; others crack along random faces."""
+    piece = _pieces_of(soup)
+    loose = (rng.random(int(piece.max()) + 1) < 0.2)[piece] | (rng.random(len(piece)) < 0.02)
+    corners = soup.faces[loose].ravel()
+    faces = soup.faces.copy()
+    faces[loose] = len(soup.vertices) + np.arange(len(corners)).reshape(-1, 3)
+    return _Soup(np.concatenate([soup.vertices, soup.vertices[corners]]), faces, soup.labels)
+
+
+def _duplicate(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """One face in a hundred is there twice."""
+    again = rng.choice(len(soup.faces), len(soup.faces) // 100 + 1, replace=False)
+    return _append(soup, soup.vertices[:0], soup.faces[again], soup.labels[again])
+
+
+def _add_fins(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """One face in two hundred grows a small third face on an edge."""
+    on = rng.choice(len(soup.faces), len(soup.faces) // 200 + 1, replace=False)
+    corners = soup.vertices[soup.faces[on]]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    tip = corners.mean(axis=1) + 0.3 * cross / np.sqrt(np.maximum(np.linalg.norm(cross, axis=1), 1e-300))[:, None]
+    fins = np.stack([soup.faces[on, 0], soup.faces[on, 1], len(soup.vertices) + np.arange(len(on))], axis=1)
+    return _append(soup, tip, fins, soup.labels[on])
+
+
+def _add_slivers(soup: _Soup, rng: np.random.Generator) -> _Soup:
+    """One face in three hundred gets a neighbour without area: two corners alike, or three in a row."""
+    on = rng.choice(len(soup.faces), len(soup.faces) // 300 + 2, replace=False)
+    a, b = soup.faces[on, 0], soup.faces[on, 1]
+    collapsed = rng.random(len(on)) < 0.5
+    middles = len(soup.vertices) + np.arange(len(on))
+    slivers = np.stack([a, b, np.where(collapsed, b, middles)], axis=1)
+    halfway = (soup.vertices[a] + soup.vertices[b]) / 2.0
+    return _append(soup, halfway, slivers, soup.labels[on])
+
+
+def _to_count(soup: _Soup, n_faces: int, rng: np.random.Generator) -> _Soup:
+    """Exactly `n_faces` faces: some dropped, or some split on one side of an edge only (T-junctions)."""
+    if len(soup.faces) > n_faces:
+        keep = np.sort(rng.choice(len(soup.faces), n_faces, replace=False))
+        return _Soup(soup.vertices, soup.faces[keep], soup.labels[keep])
+    while len(soup.faces) < n_faces:
+        areas = face_areas(TriMesh(soup.vertices, soup.faces))
+        n_missing = n_faces - len(soup.faces)
+        large = np.argsort(-areas, kind="stable")[: max(len(areas) // 2, 1)]
+        on = rng.choice(large, min(n_missing, len(large)), replace=False)
+        a, b, c = soup.faces[on].T
+        middle = len(soup.vertices) + np.arange(len(on))
+        faces = soup.faces.copy()
+        faces[on] = np.stack([a, middle, c], axis=1)
+        halfway = (soup.vertices[a] + soup.vertices[b]) / 2.0
+        split = _Soup(soup.vertices, faces, soup.labels)
+        soup = _append(split, halfway, np.stack([middle, b, c], axis=1), soup.labels[on])
+    return soup
+
+
+def _append(soup: _Soup, vertices: np.ndarray, faces: np.ndarray, labels: np.ndarray) -> _Soup:
+    return _Soup(
+        np.concatenate([soup.vertices, vertices]),
+        np.concatenate([soup.faces, faces]),
+        np.concatenate([soup.labels, labels]),
+    )
+
+
+def _pieces_of(soup: _Soup) -> np.ndarray:
+    return edge_components(TriMesh(soup.vertices, soup.faces))
