@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Float32
 
-from partwise.errors import ParameterError
 from partwise.features.kernels import shape_context as kernels
+from partwise.features.parameters import ShapeContextParameters
 from partwise.geometry.faces import face_centroids, face_normals
 from partwise.geometry.geodesics import FaceGraph, face_graph
 from partwise.geometry.kernels.geodesics import LANES, geodesic_batches
@@ -19,30 +19,6 @@ BIN_EXPONENT = 0.9
 WEIGHT_OFFSET = 0.1
 VALUES_HELD = 2**25
 """Distances kept at a time (134 MB): all of them on most meshes; else the reference comes from an even part of them."""
-
-
-@dataclass(frozen=True, slots=True)
-class ShapeContextParameters:
-    """Size of the histogram and when to sample.
-
-    n_angle_bins, n_distance_bins : bins over [−90°, 90°] and over [0, 1.2·g95].
-    all_pairs_below : meshes with at most this many faces use every face as a target.
-    n_targets : above that, the number of sampled targets of each connected component.
-
-    Raises
-    ------
-    ParameterError : a number of bins or targets below 1, or a negative all_pairs_below.
-    """
-
-    n_angle_bins: int = 16
-    n_distance_bins: int = 16
-    all_pairs_below: int = 5000
-    n_targets: int = 2000
-
-    def __post_init__(self) -> None:
-        for name, least in (("n_angle_bins", 1), ("n_distance_bins", 1), ("all_pairs_below", 0), ("n_targets", 1)):
-            if getattr(self, name) < least:
-                raise ParameterError(f"{name} must be at least {least} but is {getattr(self, name)}; raise it")
 
 
 def distance_bin_edges(n_bins: int) -> Float[np.ndarray, " edges"]:
@@ -105,7 +81,7 @@ def shape_context(mesh: TriMesh, parameters: ShapeContextParameters | None = Non
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Surface:
-    """What binning needs to know of faces and targets, in float32: centroids (m, 3), and per target (t, …)."""
+    """What binning needs to know, float32: faces' centroids (m, 3); targets' points and normals (3, t), weights (t,)."""
 
     centroids: np.ndarray
     points: np.ndarray
@@ -117,8 +93,8 @@ class _Surface:
         centroids = face_centroids(mesh)
         return cls(
             centroids.astype(np.float32),
-            centroids[sample.faces].astype(np.float32),
-            face_normals(mesh)[sample.faces].astype(np.float32),
+            np.ascontiguousarray(centroids[sample.faces].T, dtype=np.float32),
+            np.ascontiguousarray(face_normals(mesh)[sample.faces].T, dtype=np.float32),
             (sample.areas / sample.areas.sum()).astype(np.float32),
         )
 
@@ -142,6 +118,7 @@ def _bin(
 ) -> None:
     """Adds these batches of targets to the histograms (m, d)."""
     sine_edges = np.sin(np.linspace(-np.pi / 2, np.pi / 2, parameters.n_angle_bins + 1))
+    distance_edges = distance_bin_edges(parameters.n_distance_bins)
     kernels.add_to_histograms(
         fields,
         batches,
@@ -153,11 +130,19 @@ def _bin(
         surface.weights,
         surface.centroids,
         np.float32(reference),
+        np.float32(DISTANCE_LIMIT),
         np.float32(WEIGHT_OFFSET),
-        sine_edges.astype(np.float32),
-        distance_bin_edges(parameters.n_distance_bins).astype(np.float32),
+        _inner_edges(sine_edges),
+        _inner_edges(distance_edges),
+        parameters.n_distance_bins,
         histograms,
     )
+
+
+def _inner_edges(edges: np.ndarray) -> np.ndarray:
+    """All but the first and last, filled up with infinity to a multiple of 8, as the kernel wants them."""
+    inner = edges[1:-1].astype(np.float32)
+    return np.pad(inner, (0, -len(inner) % 8), constant_values=np.inf)
 
 
 def _reference_distance(fields: np.ndarray, batches: np.ndarray, graph: FaceGraph, sample: FaceSample) -> float:

@@ -1,15 +1,13 @@
 """Shape diameter of every face: how thick the body is behind it."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from jaxtyping import Float, Float32
 from scipy import sparse
 
-from partwise.errors import ParameterError
 from partwise.features.kernels.shape_diameter import inward_rays, robust_means, smooth_bilaterally
+from partwise.features.parameters import ShapeDiameterParameters
 from partwise.geometry.adjacency import edge_adjacency
 from partwise.geometry.faces import bounding_box_diagonal, face_centroids, face_normals
 from partwise.mesh import TriMesh
@@ -20,32 +18,6 @@ ALLOWED_SPREAD = 1.5
 RANGE_FACTOR = 1.5
 FACES_PER_WINDOW = 2000
 RAYS_PER_BATCH = 500_000
-
-
-@dataclass(frozen=True, slots=True)
-class ShapeDiameterParameters:
-    """The cone of rays and the final scale.
-
-    alpha : of ln(αx + 1)/ln(α + 1), > 0. 4 is Shapira's; CGAL uses 5.
-    n_rays : rays per face.
-    cone_degrees : opening angle, in (0, 180).
-
-    Raises
-    ------
-    ParameterError : a value outside these ranges.
-    """
-
-    alpha: float = 4.0
-    n_rays: int = 25
-    cone_degrees: float = 120.0
-
-    def __post_init__(self) -> None:
-        if not 0 < self.alpha < np.inf:
-            raise ParameterError(f"alpha must be positive and finite but is {self.alpha}; 4 is usual")
-        if self.n_rays < 1:
-            raise ParameterError(f"n_rays must be at least 1 but is {self.n_rays}; 25 is usual")
-        if not 0 < self.cone_degrees < 180:
-            raise ParameterError(f"cone_degrees must lie in (0, 180) but is {self.cone_degrees}; 120 is usual")
 
 
 def shape_diameter(mesh: TriMesh, parameters: ShapeDiameterParameters | None = None) -> Float32[np.ndarray, " m"]:

@@ -1,37 +1,13 @@
 """Spin image of every face: the vertices around its normal, by distance from the axis and height along it."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from jaxtyping import Float32
 
-from partwise.errors import ParameterError
 from partwise.features.kernels.spin_image import spin_images
+from partwise.features.parameters import SpinImageParameters
 from partwise.geometry.faces import face_centroids, face_normals
 from partwise.geometry.vertices import vertex_areas, vertex_normals
 from partwise.mesh import TriMesh
-
-
-@dataclass(frozen=True, slots=True)
-class SpinImageParameters:
-    """Size of the image.
-
-    support : greatest distance from the axis, and the extent along it, in normalised units.
-    n_bins : bins along each side; one is support / n_bins wide (0.125 by default).
-
-    Raises
-    ------
-    ParameterError : a support that is not positive and finite, or fewer than one bin.
-    """
-
-    support: float = 2.0
-    n_bins: int = 16
-
-    def __post_init__(self) -> None:
-        if not 0 < self.support < np.inf:
-            raise ParameterError(f"support must be positive and finite but is {self.support}; 2.0 is usual")
-        if self.n_bins < 1:
-            raise ParameterError(f"n_bins must be at least 1 but is {self.n_bins}; 16 is usual")
 
 
 def spin_image(mesh: TriMesh, parameters: SpinImageParameters | None = None) -> Float32[np.ndarray, "m d"]:

@@ -48,53 +48,65 @@ def distance_histogram(fields, batches, component, targets, target_starts, weigh
 
 
 @njit(cache=True)
-def _bin_of(value, low, cells_per_unit, first_bin, edges):
-    """Bin of `value`, edges[bin] ≤ value < edges[bin + 1], from a table of the bin at the start of equal cells."""
-    cell = min(max(int((value - low) * cells_per_unit), 0), len(first_bin) - 1)
-    found = first_bin[cell]
-    while found + 2 < len(edges) and value >= edges[found + 1]:
-        found += 1
-    return found
+def _sines(points, normals, x, y, z, first, last, sine):
+    """Sine of the angle of targets first … last − 1 seen from (x, y, z); 0 where the two coincide."""
+    # Slices and not offsets: an index that may be negative keeps the loop from becoming vector instructions.
+    px, py, pz = points[0, first:last], points[1, first:last], points[2, first:last]
+    nx, ny, nz = normals[0, first:last], normals[1, first:last], normals[2, first:last]
+    for lane in range(last - first):
+        dx, dy, dz = px[lane] - x, py[lane] - y, pz[lane] - z
+        square = dx * dx + dy * dy + dz * dz
+        along = dx * nx[lane] + dy * ny[lane] + dz * nz[lane]
+        sine[lane] = along / np.sqrt(max(square, np.float32(1e-30)))
 
 
 @njit(cache=True)
-def _first_bins(edges, n_cells):
-    """The bin in which each of n_cells equal cells between the first and the last edge begins."""
-    first = np.zeros(n_cells, np.int64)
-    for cell in range(n_cells):
-        start = edges[0] + (edges[-1] - edges[0]) * cell / n_cells
-        while first[cell] + 2 < len(edges) and start >= edges[first[cell] + 1]:
-            first[cell] += 1
-    return first
+def _count_passed(values, edges, stride, bins, n):
+    """Adds `stride` to each of n bins for every edge that its value has reached; edges come in multiples of 8."""
+    for at in range(0, len(edges), 8):
+        group = edges[at : at + 8]
+        for lane in range(n):
+            passed = np.int32(0)
+            for k in range(8):  # a fixed number, so that it unrolls within the vector loop
+                passed += np.int32(values[lane] >= group[k])
+            bins[lane] += passed * stride
+
+
+@njit(cache=True)
+def _deposit(row, bins, distance, limit, weights, weight_offset, targets, face):
+    for lane in range(len(targets)):
+        if distance[lane] < limit and targets[lane] != face:
+            row[bins[lane]] += weights[lane] / (distance[lane] + weight_offset)
 
 
 @njit(cache=True, parallel=True)
 def add_to_histograms(
-    fields, batches, component, targets, target_starts, target_points, target_normals, target_weights,
-    centroids, reference, weight_offset, sine_edges, distance_edges, histograms,
+    fields, batches, component, targets, target_starts, points, normals, weights,
+    centroids, reference, limit, weight_offset, sine_edges, distance_edges, n_distance_bins, histograms,
 ):  # fmt: skip
     """Adds these batches' targets to histograms (m, angle bins · distance bins) float32.
 
-    sine_edges are the sines of the angle bins' edges, distance_edges are relative to `reference`, the g95.
+    points and normals (3, t) and weights (t,) are the targets', centroids (m, 3) the faces'. sine_edges are the sines
+    of the inner edges of the angle bins, distance_edges the inner edges relative to `reference`, the g95; both filled
+    up with infinity to a multiple of 8. Distances from `limit` on are dropped. All float32.
     """
-    n_angles, n_distances = len(sine_edges) - 1, len(distance_edges) - 1
-    sine_cells, distance_cells = _first_bins(sine_edges, 16 * n_angles), _first_bins(distance_edges, 4 * n_distances)
-    sines_per_unit = len(sine_cells) / (sine_edges[-1] - sine_edges[0])
-    distances_per_unit = len(distance_cells) / distance_edges[-1]
+    scale = np.float32(1.0) / reference
     for face in prange(len(component)):
         row = histograms[face]
-        x, y, z = centroids[face]
-        end = target_starts[component[face] + 1]
+        sine, distance = np.empty(LANES, np.float32), np.empty(LANES, np.float32)
+        bins = np.empty(LANES, np.uint32)
+        x, y, z = centroids[face, 0], centroids[face, 1], centroids[face, 2]
         for b in range(len(batches)):
             first = target_starts[component[face]] + LANES * batches[b]
-            for t in range(first, min(first + LANES, end)):
-                distance = fields[b, face, t - first] / reference
-                if targets[t] == face or not distance < distance_edges[-1]:
-                    continue
-                dx, dy, dz = target_points[t, 0] - x, target_points[t, 1] - y, target_points[t, 2] - z
-                length = np.sqrt(dx * dx + dy * dy + dz * dz)
-                sine = dx * target_normals[t, 0] + dy * target_normals[t, 1] + dz * target_normals[t, 2]
-                sine = sine / length if length > 0 else 0.0
-                angle_bin = _bin_of(sine, sine_edges[0], sines_per_unit, sine_cells, sine_edges)
-                distance_bin = _bin_of(distance, 0.0, distances_per_unit, distance_cells, distance_edges)
-                row[angle_bin * n_distances + distance_bin] += target_weights[t] / (distance + weight_offset)
+            last = min(first + LANES, target_starts[component[face] + 1])
+            if last <= first:
+                continue
+            n = last - first
+            field = fields[b, face]
+            for lane in range(n):
+                distance[lane] = field[lane] * scale
+            _sines(points, normals, x, y, z, first, last, sine)
+            bins[:] = 0
+            _count_passed(sine, sine_edges, np.uint32(n_distance_bins), bins, n)
+            _count_passed(distance, distance_edges, np.uint32(1), bins, n)
+            _deposit(row, bins, distance, limit, weights[first:last], weight_offset, targets[first:last], face)
