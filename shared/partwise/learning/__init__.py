@@ -1,0 +1,1 @@
+"""From labelled faces to part probabilities: the only package that imports torch."""
