@@ -15,7 +15,7 @@ from partwise.mesh import TriMesh
 
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_MAX_NODES = 1_000_000
+_LARGEST_TRANSFORM = 1e12  # map coordinates fit; what a damaged file holds does not
 
 
 def parse_glb(data: bytes, limits: ReadLimits) -> TriMesh:
@@ -101,7 +101,7 @@ def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
         offset += 8 + n_bytes
     try:
         document = json.loads(found.get(_JSON_CHUNK, b""))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise FileFormatError(f"a GLB file must hold a JSON chunk but {error}; export the file again") from error
     if not isinstance(document, dict):
         raise FileFormatError("a GLB's JSON must be an object but is not; export the file again")
@@ -118,11 +118,12 @@ def _read_scene(document: dict[str, Any], accessors: GltfAccessors, limits: Read
                 continue
             V, F = _read_primitive(primitive, accessors)
             n_faces += len(F)
-            limits.check_faces(n_faces)  # before the next one: one mesh can be placed any number of times
             vertices.append(V @ transform[:3, :3].T + transform[:3, 3])
             mirrored = np.linalg.det(transform[:3, :3]) < 0
             faces.append((F[:, [0, 2, 1]] if mirrored else F) + n_vertices)
             n_vertices += len(V)
+            limits.check_faces(n_faces)  # before the next one: one mesh can be placed any number of times
+            limits.check_vertices(n_vertices)
     if not n_faces:
         raise FileFormatError("a GLB scene must have triangles but has 0; is it empty, or lines and points?")
     return TriMesh(*weld_equal_vertices(np.concatenate(vertices), np.concatenate(faces)))
@@ -144,7 +145,7 @@ def _placed_meshes(document: dict[str, Any]) -> Iterator[tuple[int, Float[np.nda
     while stack:
         index, parent = stack.pop()
         n_visited += 1
-        if n_visited > min(len(nodes), _MAX_NODES):  # in a tree each node is met once
+        if n_visited > len(nodes):  # in a tree each node is met once
             raise FileFormatError(f"nodes must form a tree but node {index} is met again; export the file again")
         transform = parent @ _local_transform(nodes[index])
         if "mesh" in nodes[index]:
@@ -154,17 +155,31 @@ def _placed_meshes(document: dict[str, Any]) -> Iterator[tuple[int, Float[np.nda
 
 def _local_transform(node: dict[str, Any]) -> Float[np.ndarray, "4 4"]:
     if "matrix" in node:
-        return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
-    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
+        return _numbers(node, "matrix", np.eye(4).ravel()).reshape(4, 4).T
+    x, y, z, w = _numbers(node, "rotation", np.array([0.0, 0.0, 0.0, 1.0]))
     transform = np.eye(4)
     transform[:3, :3] = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
-    transform[:3, :3] *= np.asarray(node.get("scale", (1.0, 1.0, 1.0)))  # T·R·S: scale acts on columns
-    transform[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
+    transform[:3, :3] *= _numbers(node, "scale", np.ones(3))  # T·R·S: scale acts on columns
+    transform[:3, 3] = _numbers(node, "translation", np.zeros(3))
     return transform
+
+
+def _numbers(node: dict[str, Any], key: str, default: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
+    """As many finite, sane numbers as the default has."""
+    try:
+        values = np.array(node.get(key, default), dtype=np.float64)
+    except ValueError as error:
+        raise FileFormatError(f"a node's {key} must be numbers but {error}; export the file again") from error
+    if values.shape != default.shape or not (np.abs(values) < _LARGEST_TRANSFORM).all():
+        raise FileFormatError(
+            f"a node's {key} must be {len(default)} numbers below {_LARGEST_TRANSFORM:g} but is {values.tolist()}; "
+            "export the file again"
+        )
+    return values
 
 
 def _read_primitive(

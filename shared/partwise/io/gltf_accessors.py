@@ -25,21 +25,14 @@ class GltfAccessors:
         self._document = document
         self._binary_chunk = binary_chunk
 
-    def count(self, index: int) -> int:
-        """Records of an accessor, without reading them."""
-        return int(self._accessor(index)["count"])
-
     def read(self, index: int) -> np.ndarray:
         """Accessor `index` as a (count, columns) array of its component type, or float64 if it is normalised."""
         accessor = self._accessor(index)
         dtype = np.dtype(_COMPONENT_TYPES[accessor["componentType"]])
         n, n_columns = int(accessor["count"]), _COLUMNS[accessor["type"]]
-        if "bufferView" in accessor:
-            values = self._rows(accessor["bufferView"], accessor.get("byteOffset", 0), n, n_columns, dtype)
-        elif "sparse" in accessor:
-            values = np.zeros((n, n_columns), dtype=dtype)
-        else:
+        if "bufferView" not in accessor:  # glTF then means zeros, which no position or index array is
             raise FileFormatError(f"accessor {index} must have data but has none; export without compression")
+        values = self._rows(accessor["bufferView"], accessor.get("byteOffset", 0), n, n_columns, dtype)
         if "sparse" in accessor:
             values = self._with_sparse(values, accessor["sparse"])
         if accessor.get("normalized") and dtype.kind != "f":

@@ -30,6 +30,14 @@ class ReadLimits:
                 f"a mesh file may have {self.max_bytes} bytes but this has {n_bytes}; decimate it or raise max_bytes"
             )
 
+    def check_vertices(self, n_vertices: int) -> None:
+        """Raises FileFormatError when there are more vertices than the most faces could use."""
+        if n_vertices > 3 * self.max_faces:
+            raise FileFormatError(
+                f"{self.max_faces} faces can use {3 * self.max_faces} vertices but this mesh has {n_vertices}; "
+                "drop unused ones or raise max_faces"
+            )
+
     def check_faces(self, n_faces: int) -> None:
         """Raises FileFormatError when there are too many faces; called with declared counts before memory is taken."""
         if n_faces > self.max_faces:

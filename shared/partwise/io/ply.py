@@ -9,6 +9,7 @@ from partwise.io.ply_elements import PlyElement, PlyHeader, PlyList, PlyTable, p
 from partwise.io.polygons import fan_triangles
 from partwise.mesh import TriMesh
 
+_FLOAT64_WHOLE_LIMIT = 2.0**53
 _CORNER_NAMES = ("vertex_indices", "vertex_index")
 
 
@@ -93,6 +94,7 @@ def _corners(face: PlyTable) -> PlyList:
 
 
 def _whole(values: np.ndarray, what: str) -> Int[np.ndarray, " n"]:
-    if values.dtype.kind == "f" and not (np.isfinite(values).all() and (values == np.trunc(values)).all()):
+    is_whole = (np.abs(values) < _FLOAT64_WHOLE_LIMIT) & (values == np.trunc(values))
+    if values.dtype.kind == "f" and not is_whole.all():
         raise FileFormatError(f"{what} must be whole numbers but some are not; is the file damaged?")
     return values.astype(np.int64)

@@ -138,6 +138,8 @@ def _first_lengths(data: bytes, offset: int, element: PlyElement, order: str) ->
             n, offset = _read_length(data, offset, order + p.length_type, element)
             lengths[p.name] = n
         offset += n * np.dtype(p.value_type).itemsize
+    if offset > len(data):
+        raise _truncated(element)
     return lengths
 
 
@@ -226,9 +228,12 @@ def _ascii_table(lines: list[bytes], element: PlyElement) -> PlyTable:
         if p.length_type:
             if (cursor >= row_end).any():
                 raise _truncated(element)
-            lengths = flat[cursor].astype(np.int64)
+            stated = flat[cursor]
             cursor = cursor + 1
-        if (lengths < 0).any() or (cursor + lengths > row_end).any():
+            if not ((stated >= 0) & (stated <= row_end - cursor)).all():  # NaN fails this too
+                raise _truncated(element)
+            lengths = stated.astype(np.int64)
+        if (cursor + lengths > row_end).any():
             raise _truncated(element)
         step = np.arange(int(lengths.sum())) - np.repeat(np.cumsum(lengths) - lengths, lengths)
         values = flat[np.repeat(cursor, lengths) + step]
