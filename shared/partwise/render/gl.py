@@ -86,8 +86,8 @@ class GlRenderer:
 def _leave_display_open(offscreen: Any) -> None:
     """Make `offscreen.delete` destroy its context only.
 
-    pyrender also terminates the EGL display, which all contexts of a process share: closing one renderer, or the garbage
-    collector finding one, would break the others.
+    pyrender also terminates the EGL display, which all contexts of a process share: closing one renderer, or the
+    garbage collector finding one, would break the others.
     """
     platform = offscreen._platform
     terminate = platform.delete_context
