@@ -137,17 +137,17 @@ def read_manifest(path: Path | str, data: bytes | None = None) -> ExportManifest
     text = read_label_text(path, data)
     try:
         document = json.loads(text)
-        if document["format"] != FORMAT or document["format_version"] != FORMAT_VERSION:
-            raise FileFormatError(
-                f"{path}: a manifest must be {FORMAT} {FORMAT_VERSION} but is {document['format']} "
-                f"{document['format_version']}; update partwise or export again"
-            )
+        found = document["format"], document["format_version"]
+        if found != (FORMAT, FORMAT_VERSION):
+            raise ValueError(f"its format is {found}")
         fields = {key: value for key, value in document.items() if key not in ("format", "format_version")}
         fields["parts"] = tuple(ManifestPart(**part) for part in document["parts"])
         fields["shapes"] = tuple(_shape(shape) for shape in document["shapes"])
         return ExportManifest(**fields)
-    except (KeyError, TypeError, AttributeError, json.JSONDecodeError, ParameterError) as error:
-        raise FileFormatError(f"{path}: a manifest must be as partwise writes it but {error}; export again") from error
+    except (KeyError, TypeError, AttributeError, ValueError) as error:  # JSON's and our own errors are ValueErrors
+        raise FileFormatError(
+            f"{path}: a manifest must be {FORMAT} {FORMAT_VERSION} as partwise writes it but {error}; export again"
+        ) from error
 
 
 def damaged_files(manifest: ExportManifest, folder: Path) -> tuple[str, ...]:

@@ -42,7 +42,7 @@ def weighted_accuracy(
     total = float(counted.sum())
     if not total > 0:
         raise NotEnoughDataError("accuracy needs faces with a true label and area but there are none; label some first")
-    return float(counted[predicted == truth].sum() / total)
+    return float(np.where(predicted == truth, counted, 0.0).sum() / total)
 
 
 def check_comparable(predicted: np.ndarray, truth: np.ndarray, weights: np.ndarray) -> None:

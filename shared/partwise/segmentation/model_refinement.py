@@ -167,4 +167,4 @@ def _share_right(labels: np.ndarray, truth: np.ndarray, areas: np.ndarray) -> fl
     total = float(labelled.sum())
     if not total > 0:
         raise NotEnoughDataError("tuning needs labelled area on every shape but one has none; leave that shape out")
-    return float(labelled[labels == truth].sum() / total)
+    return float(np.where(labels == truth, labelled, 0.0).sum() / total)
