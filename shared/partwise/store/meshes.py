@@ -19,22 +19,22 @@ def mesh_arrays(mesh: TriMesh) -> dict[str, np.ndarray]:
 
 
 def read_mesh(arrays: ArrayStore, mesh: Mesh) -> TriMesh:
-    """The mesh on record, from its block or, where that is gone, from the kept copy.
+    """The mesh on record, from its kept copy if there is one, else from its block.
 
     Raises
     ------
     NotFoundError : it is in neither place.
     StoreError : the store cannot be read, or holds another mesh than the record says.
     """
-    if mesh.block_name is not None and mesh.row is not None:
-        found = _trimesh(arrays.read_many(mesh.block_name, mesh.row, ("vertices", "faces")))
-    elif mesh.kept_key is not None:
+    if mesh.kept_key is not None:
         found = _trimesh(_loaded(arrays.get_bytes(mesh.kept_key), mesh.kept_key))
+    elif mesh.block_name is not None and mesh.row is not None:
+        found = _trimesh(arrays.read_many(mesh.block_name, mesh.row, ("vertices", "faces")))
     else:
         raise NotFoundError(f"mesh {mesh.mesh_hash[:12]}… is no longer stored; preprocess shape {mesh.shape_id} again")
-    if found.content_hash() != mesh.mesh_hash:
+    if (stored := found.content_hash()) != mesh.mesh_hash:
         raise StoreError(
-            f"shape {mesh.shape_id} must have mesh {mesh.mesh_hash[:12]}… but the store holds {found.content_hash()[:12]}…; "
+            f"shape {mesh.shape_id} must have mesh {mesh.mesh_hash[:12]}… but the store holds {stored[:12]}…; "
             "preprocess it again"
         )
     return found

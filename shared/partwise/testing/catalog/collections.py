@@ -1,0 +1,118 @@
+"""Conformance: collections, parts, people, the audit trail."""
+# ruff: noqa: S101 # a test suite asserts
+
+from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
+from partwise.store.catalog import Catalog
+from partwise.testing.expect import raises
+
+
+class CollectionConformance:
+    def test_collection_comes_back_as_created(self, catalog: Catalog) -> None:
+        created = catalog.create_collection("chairs", ["seat"], {"upright": True, "up": "y"})
+        assert catalog.get_collection("chairs") == created
+        assert created.settings == {"upright": True, "up": "y"}
+        assert created.created_at.utcoffset() is not None
+
+    def test_collections_are_listed_by_name(self, catalog: Catalog) -> None:
+        for name in ("mugs", "chairs"):
+            catalog.create_collection(name, ["body"])
+        assert [each.name for each in catalog.list_collections()] == ["chairs", "mugs"]
+
+    def test_taken_collection_name_is_refused(self, catalog: Catalog) -> None:
+        catalog.create_collection("chairs", ["seat"])
+        with raises(ConflictError, "chairs"):
+            catalog.create_collection("chairs", ["seat"])
+
+    def test_padded_collection_name_is_refused(self, catalog: Catalog) -> None:
+        with raises(ParameterError, "' chairs'"):
+            catalog.create_collection(" chairs", ["seat"])
+
+    def test_repeated_part_makes_no_collection(self, catalog: Catalog) -> None:
+        with raises(LabelError, "seat"):
+            catalog.create_collection("chairs", ["seat", "seat"])
+        assert catalog.list_collections() == []
+
+    def test_unknown_collection_names_the_known_ones(self, catalog: Catalog) -> None:
+        catalog.create_collection("chairs", ["seat"])
+        with raises(NotFoundError, "sofas", "chairs"):
+            catalog.get_collection("sofas")
+
+    def test_unknown_collection_id_is_refused(self, catalog: Catalog) -> None:
+        with raises(NotFoundError, "99"):
+            catalog.parts(99)
+
+    def test_parts_are_numbered_from_one_in_order(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat", "back", "leg"])
+        parts = catalog.parts(collection.id)
+        assert (parts.version, parts.ids, parts.names) == (1, (1, 2, 3), ("seat", "back", "leg"))
+
+    def test_added_part_makes_a_version_and_leaves_the_old_one(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat"])
+        after = catalog.add_part(collection.id, "arm", "#123456", "what an elbow rests on")
+        assert (after.version, after.names, after.part(2).gloss) == (2, ("seat", "arm"), "what an elbow rests on")
+        assert catalog.parts(collection.id, 1).names == ("seat",)
+
+    def test_removed_part_id_is_never_used_again(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat", "back"])
+        assert catalog.remove_part(collection.id, 2).ids == (1,)
+        assert catalog.add_part(collection.id, "back").ids == (1, 3)
+        assert catalog.parts(collection.id, 1).ids == (1, 2)
+
+    def test_renaming_keeps_version_and_id(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat"])
+        after = catalog.update_part(collection.id, 1, name="cushion", colour="#000000", gloss="soft")
+        part = after.part(1)
+        assert (after.version, part.name, part.colour, part.gloss) == (1, "cushion", "#000000", "soft")
+
+    def test_renaming_to_a_taken_name_is_refused(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat", "back"])
+        with raises(ConflictError, "back"):
+            catalog.update_part(collection.id, 1, name="back")
+
+    def test_adding_a_taken_name_is_refused(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat"])
+        with raises(ConflictError, "seat"):
+            catalog.add_part(collection.id, "seat")
+        assert catalog.get_collection("chairs").schema_version == 1
+
+    def test_removing_an_unknown_part_is_refused(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat"])
+        with raises(LabelError, "7"):
+            catalog.remove_part(collection.id, 7)
+
+    def test_old_version_stays_readable_when_a_removed_name_is_given_away(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat", "back"])
+        catalog.remove_part(collection.id, 2)
+        catalog.update_part(collection.id, 1, name="back")
+        assert catalog.parts(collection.id, 1).names == ("back (1)", "back (2)")
+
+    def test_unknown_schema_version_is_refused(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat"])
+        for version in (0, 2):
+            with raises(LabelError, str(version)):
+                catalog.parts(collection.id, version)
+
+    def test_person_comes_back_by_name(self, catalog: Catalog) -> None:
+        added = catalog.add_person("Ann Ö.")
+        assert catalog.get_person("Ann Ö.") == added
+        assert catalog.list_people() == [added]
+
+    def test_taken_person_name_is_refused(self, catalog: Catalog) -> None:
+        catalog.add_person("ann")
+        with raises(ConflictError, "ann"):
+            catalog.add_person("ann")
+
+    def test_nameless_person_is_refused(self, catalog: Catalog) -> None:
+        with raises(ParameterError, "name"):
+            catalog.add_person("")
+
+    def test_unknown_person_is_refused(self, catalog: Catalog) -> None:
+        with raises(NotFoundError, "bob"):
+            catalog.get_person("bob")
+
+    def test_audit_is_paged_in_order(self, catalog: Catalog) -> None:
+        for i in range(3):
+            catalog.append_audit("ann", "look", f"shape {i}", {"i": i})
+        first = catalog.audit(limit=2)
+        rest = catalog.audit(after=first[-1].id)
+        assert [entry.detail["i"] for entry in [*first, *rest]] == [0, 1, 2]

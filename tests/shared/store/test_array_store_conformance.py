@@ -1,0 +1,22 @@
+"""The Zarr array store is an `ArrayStore`, on a local folder and on fsspec."""
+
+import uuid
+from pathlib import Path
+
+import pytest
+
+from partwise.store.open import open_array_store
+from partwise.store.zarr_store import ZarrArrayStore
+from partwise.testing.array_store import ArrayStoreConformance
+
+
+class TestLocalFolder(ArrayStoreConformance):
+    @pytest.fixture
+    def store(self, tmp_path: Path) -> ZarrArrayStore:
+        return open_array_store(str(tmp_path / "arrays"))
+
+
+class TestFsspec(ArrayStoreConformance):
+    @pytest.fixture
+    def store(self) -> ZarrArrayStore:
+        return open_array_store(f"memory://{uuid.uuid4().hex}/arrays")
