@@ -1,6 +1,7 @@
 """Chair backs of many kinds, upright at the origin: from y = 0 (inside the seat) up, across ±half_x, depth along z."""
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
@@ -8,25 +9,19 @@ from partwise.simulate.primitives import Box, Rod, Solid, Tube, place
 from partwise.simulate.supports import beam
 from partwise.simulate.sweeps import CurvedPanel, Extrusion, smooth_curve, superellipse
 
-Back = Callable[[np.random.Generator, float, float], tuple[Solid, ...]]
+Back: TypeAlias = Callable[[np.random.Generator, float, float], tuple[Solid, ...]]
 
 
-def random_back(rng: np.random.Generator, half_x: float, height: float, is_heavy: bool) -> tuple[Solid, ...]:
-    """One of the kinds below; upholstered ones for heavy chairs."""
-    if is_heavy:
-        return _upholstered(rng, half_x, height)
-    kinds: tuple[Back, ...] = (
-        _board,
-        _shaped,
-        _curved,
-        _slatted,
-        _ladder,
-        _spindles,
-        _crossed,
-        _floating,
-        _upholstered,
-    )
-    odds = [0.12, 0.14, 0.14, 0.14, 0.14, 0.1, 0.06, 0.12, 0.04]
+def random_back(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
+    """Any kind of back."""
+    kinds: tuple[Back, ...] = (random_wide_back, _shaped, _floating, _barrel)
+    return kinds[int(rng.choice(4, p=[0.62, 0.16, 0.14, 0.08]))](rng, half_x, height)
+
+
+def random_wide_back(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
+    """A back that spans the seat's width at the height of arms."""
+    kinds: tuple[Back, ...] = (_board, _curved, _slatted, _ladder, _spindles, _crossed, upholstered_back)
+    odds = [0.17, 0.17, 0.19, 0.19, 0.14, 0.09, 0.05]
     return kinds[int(rng.choice(len(kinds), p=odds))](rng, half_x, height)
 
 
@@ -50,13 +45,16 @@ def _shaped(rng: np.random.Generator, half_x: float, height: float) -> tuple[Sol
 
 
 def _curved(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
-    """A board bent around the sitter: a shallow curve, or a barrel."""
-    is_barrel = rng.random() < 0.3
-    bend = half_x * (rng.uniform(1.0, 1.2) if is_barrel else rng.uniform(1.5, 3.0))
-    width = half_x * (rng.uniform(1.3, 1.6) if is_barrel else rng.uniform(1.0, 1.1))
-    t = rng.uniform(0.014, 0.03)
-    tall = height * (rng.uniform(0.6, 0.8) if is_barrel else 1.0)
-    return (place(CurvedPanel(bend, width, tall / 2, t, 0.9 * t), (0.0, tall / 2, -0.01)),)
+    """A board bent a little around the sitter."""
+    bend, t = half_x * rng.uniform(1.5, 3.0), rng.uniform(0.014, 0.03)
+    return (place(CurvedPanel(bend, 1.05 * half_x, height / 2, t, 0.9 * t), (0.0, height / 2, -0.01)),)
+
+
+def _barrel(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
+    """A low board that wraps far around the sitter."""
+    bend, t = half_x * rng.uniform(1.0, 1.15), rng.uniform(0.016, 0.035)
+    tall = height * rng.uniform(0.6, 0.85)
+    return (place(CurvedPanel(bend, half_x * rng.uniform(1.35, 1.6), tall / 2, t, 0.9 * t), (0.0, tall / 2, -0.01)),)
 
 
 def _slatted(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
@@ -132,7 +130,7 @@ def _floating(rng: np.random.Generator, half_x: float, height: float) -> tuple[S
     return (pad, *(Rod((s * x, 0.0, 0.0), (s * x, height - tall, 0.0), r, r) for s in (-1.0, 1.0)))
 
 
-def _upholstered(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
+def upholstered_back(rng: np.random.Generator, half_x: float, height: float) -> tuple[Solid, ...]:
     """A thick soft board, some with wings beside the head."""
     t = rng.uniform(0.04, 0.075)
     board: Solid = place(Box((half_x, height / 2, t), rng.uniform(0.5, 0.95) * t), (0.0, height / 2, 0.0))

@@ -12,7 +12,7 @@ from jaxtyping import Int
 
 from partwise.errors import DegenerateMeshError
 from partwise.geometry.adjacency import edge_components
-from partwise.geometry.faces import face_areas, face_centroids
+from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
 from partwise.simulate.blueprint import Blueprint
 from partwise.simulate.contour import contour, grid_over, tight_bounds
@@ -86,27 +86,23 @@ def _contour_piece(blueprint: Blueprint, index: int) -> TriMesh | None:
 
 
 def _tear(soup: _Soup, rng: np.random.Generator) -> _Soup:
-    """A few round holes, each of up to 2 % of the faces."""
+    """A few holes of up to 2 % of the diagonal, on one side only, so that no leg is cut in two."""
+    mesh = TriMesh(soup.vertices, soup.faces)
+    centroids, normals = face_centroids(mesh), face_normals(mesh)
     keep = np.ones(len(soup.faces), dtype=bool)
-    centroids = face_centroids(TriMesh(soup.vertices, soup.faces))
-    for _ in range(int(rng.integers(2, 7))):
+    for _ in range(int(rng.integers(3, 12))):
         middle = int(rng.integers(len(soup.faces)))
-        mine = np.flatnonzero(soup.labels == soup.labels[middle])
-        gap = np.linalg.norm(centroids[mine] - centroids[middle], axis=1)
-        n_gone = min(int(len(soup.faces) * rng.uniform(0.001, 0.02)) + 1, len(mine) // 4)
-        keep[mine[np.argsort(gap, kind="stable")[:n_gone]]] = False
+        radius = bounding_box_diagonal(mesh) * rng.uniform(0.004, 0.02)
+        near = np.linalg.norm(centroids - centroids[middle], axis=1) < radius
+        keep &= ~(near & (normals @ normals[middle] > 0.5) & (soup.labels == soup.labels[middle]))
     return _Soup(soup.vertices, soup.faces[keep], soup.labels[keep])
 
 
 def _open_pieces(soup: _Soup, rng: np.random.Generator) -> _Soup:
     """Some pieces lose what faces one way (an open bottom), unless that is most of them."""
-    mesh = TriMesh(soup.vertices, soup.faces)
-    corners = mesh.vertices[mesh.faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    steepness = cross[:, 1] / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)
     piece = _pieces_of(soup)
-    chosen = np.flatnonzero(rng.random(int(piece.max()) + 1) < 0.25)
-    gone = np.isin(piece, chosen) & (steepness < -0.9)
+    is_chosen = rng.random(int(piece.max()) + 1) < 0.25
+    gone = is_chosen[piece] & (face_normals(TriMesh(soup.vertices, soup.faces))[:, 1] < -0.9)
     share = np.bincount(piece, weights=gone) / np.bincount(piece)
     gone &= share[piece] < 0.35
     return _Soup(soup.vertices, soup.faces[~gone], soup.labels[~gone])

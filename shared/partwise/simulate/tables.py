@@ -4,7 +4,7 @@ import numpy as np
 
 from partwise.simulate import supports
 from partwise.simulate.blueprint import Blueprint, Deformation, Piece, random_ripples
-from partwise.simulate.primitives import Box, Ellipsoid, Solid, place
+from partwise.simulate.primitives import Box, Clipped, Ellipsoid, Solid, place
 from partwise.simulate.supports import Footing
 from partwise.simulate.sweeps import Extrusion, superellipse
 
@@ -20,7 +20,8 @@ _SPREAD = (
     supports.cross_legs,
     supports.trestle,
 )
-_SPREAD_ODDS = (0.34, 0.13, 0.09, 0.12, 0.12, 0.08, 0.12)
+_SPREAD_ODDS = (0.36, 0.12, 0.09, 0.11, 0.14, 0.08, 0.1)
+_WITH_STORAGE = (supports.straight_legs, supports.sled_base, supports.panel_legs)
 
 
 def random_table(rng: np.random.Generator) -> Blueprint:
@@ -33,16 +34,16 @@ def random_table(rng: np.random.Generator) -> Blueprint:
     half_thickness = rng.uniform(0.013, 0.04)
     is_round = is_centred or rng.random() < 0.3
     pieces = [Piece(_top(rng, half_x, half_z, height, half_thickness, is_round), "top")]
-    inset = rng.uniform(0.6, 0.72) if is_round else rng.uniform(0.82, 0.96)
+    inset = rng.uniform(0.54, 0.64) if is_round else rng.uniform(0.8, 0.93)
     footing = Footing(inset * half_x, inset * half_z, height, rng.uniform(0.016, 0.036))
     if is_centred:
-        maker = _CENTRED[int(rng.integers(2))]
-        pieces += [Piece(solid, "leg") for solid in maker(rng, footing)]
+        solids = _CENTRED[int(rng.integers(2))](rng, footing)
     else:
         kind = int(rng.choice(len(_SPREAD), p=_SPREAD_ODDS))
-        pieces += [Piece(solid, "leg") for solid in _SPREAD[kind](rng, footing)]
-        if kind in (0, 4) and not is_round:
+        solids = _SPREAD[kind](rng, footing)
+        if not is_round and _SPREAD[kind] in _WITH_STORAGE:
             pieces += _storage(rng, footing, half_thickness)
+    pieces += [Piece(Clipped(solid, 0.0, height), "leg") for solid in solids]
     deformation = Deformation(
         taper=rng.normal(0.0, 0.12),
         twist=rng.normal(0.0, 0.05),
@@ -69,7 +70,7 @@ def _top(
 
 def _storage(rng: np.random.Generator, footing: Footing, half_thickness: float) -> list[Piece]:
     """Between the legs: nothing, a shelf, drawers under the top, or one column of drawers down a side."""
-    kind = rng.choice(["none", "shelf", "drawers", "column", "both"], p=[0.3, 0.3, 0.2, 0.12, 0.08])
+    kind = rng.choice(["none", "shelf", "drawers", "column", "both"], p=[0.2, 0.3, 0.22, 0.18, 0.1])
     pieces: list[Piece] = []
     if kind in ("shelf", "both"):
         y = footing.height * rng.uniform(0.18, 0.45)
