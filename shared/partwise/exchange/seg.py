@@ -19,10 +19,11 @@ def read_seg(path: Path | str, n_faces: int, data: bytes | None = None) -> Int[n
     FileFormatError : missing, empty, or not whole numbers.
     LabelError : not one number per face, or one below −1.
     """
+    tokens = read_label_bytes(path, data).split()
     try:
-        labels = parse_integers(read_label_bytes(path, data).split(), "labels")
+        labels = parse_integers(tokens, "labels")
     except FileFormatError as error:
-        raise error if str(error).startswith(str(path)) else FileFormatError(f"{path}: {error}") from error
+        raise FileFormatError(f"{path}: {error}") from error
     if len(labels) != n_faces:
         raise LabelError(f"{path}: {n_faces} faces must have a label each but there are {len(labels)}; another mesh's?")
     if n_faces and int(labels.min()) < -1:

@@ -21,7 +21,7 @@ class RefinementParameters:
     max_sweeps : at most this many rounds over the labels; two or three suffice in practice.
     """
 
-    smoothness: float = 0.5
+    smoothness: float = 1.0
     weight_by_area: bool = True
     convex_factor: float = 0.08
     probability_floor: float = 1e-6

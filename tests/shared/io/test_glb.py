@@ -267,14 +267,14 @@ def test_vertices_of_instances_count_against_the_limit():
 
 
 def test_trimesh_reads_what_is_written():
-    mesh = TriMesh(POINTS, FACES)
+    mesh = TriMesh(POINTS, FACES.astype(np.int64))
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(format_glb(mesh)), file_type="glb", process=False)
     np.testing.assert_array_equal(scene.to_geometry().faces, FACES)
 
 
 def test_trimesh_reads_the_colours():
     colours = np.array([[255, 0, 0], [0, 0, 255]], dtype=np.uint8)
-    data = format_glb(TriMesh(POINTS, FACES), colours)
+    data = format_glb(TriMesh(POINTS, FACES.astype(np.int64)), colours)
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="glb", process=False)
     np.testing.assert_array_equal(scene.to_geometry().visual.face_colors[:, :3], colours)
 
