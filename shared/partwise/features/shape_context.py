@@ -57,31 +57,45 @@ def shape_context(mesh: TriMesh, parameters: ShapeContextParameters | None = Non
     takes_all = mesh.n_faces <= parameters.all_pairs_below
     sample = farthest_point_faces(mesh, graph, mesh.n_faces if takes_all else parameters.n_targets)
     histograms = np.zeros((mesh.n_faces, parameters.n_angle_bins * parameters.n_distance_bins), dtype=np.float32)
-    n_batches = -(-int(np.diff(sample.component_starts).max()) // LANES)
-    if n_batches == 0:
+    n_rows = int(np.diff(sample.component_starts).max())
+    if n_rows == 0:
         return histograms
-    n_held = min(n_batches, max(1, VALUES_HELD // (graph.n_nodes * LANES)))
-    fields = np.empty((n_held, graph.n_nodes, LANES), dtype=np.float32)
-    # Neighbours in the list lie close, so batches spread over the list are spread over the surface.
-    first = np.arange(n_held) * n_batches // n_held
-    rest = np.setdiff1d(np.arange(n_batches), first)
-    _fill(fields, first, graph, sample)
-    reference = _reference_distance(fields, first, graph, sample)
-    if not reference > 0:
-        return histograms
+    n_held = max(1, VALUES_HELD // (graph.n_nodes * LANES))
+    stride = -(-n_rows // (n_held * LANES))
+    sample = _every_nth_first(sample, stride)
+    batches = np.arange(-(-n_rows // LANES))
+    n_first = -(-n_rows // (stride * LANES))
+    fields = np.empty((min(n_held, len(batches)), graph.n_nodes, LANES), dtype=np.float32)
     surface = _Surface.of(mesh, sample)
-    _bin(fields, first, reference, graph, sample, surface, parameters, histograms)
-    for at in range(0, len(rest), n_held):
-        batches = rest[at : at + n_held]
-        held = fields[: len(batches)]
-        _fill(held, batches, graph, sample)
-        _bin(held, batches, reference, graph, sample, surface, parameters, histograms)
+    reference = None
+    for some in (batches[:n_first], *np.split(batches[n_first:], range(n_held, len(batches) - n_first, n_held))):
+        held = fields[: len(some)]
+        geodesic_batches(
+            graph.starts, graph.neighbours, graph.lengths, sample.faces, sample.component_starts, some, held
+        )
+        if reference is None:
+            reference = _reference_distance(held, some, graph, sample)
+        if not reference > 0:
+            break
+        _bin(held, some, reference, graph, sample, surface, parameters, histograms)
     return histograms
+
+
+def _every_nth_first(sample: FaceSample, n: int) -> FaceSample:
+    """The same sample, in each component every nth face first: these are spread over all of it, and still in line."""
+    starts = sample.component_starts
+    position = np.arange(len(sample.faces)) - np.repeat(starts[:-1], np.diff(starts))
+    component = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    order = np.lexsort((position % n != 0, component))
+    new_index = np.append(np.argsort(order), -1)
+    return FaceSample(
+        sample.faces[order], starts, new_index[sample.cell], sample.areas[order], sample.n_cell_faces[order]
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Surface:
-    """What binning needs to know, float32: faces' centroids (m, 3); targets' points and normals (3, t), weights (t,)."""
+    """For binning, all float32: faces' centroids (m, 3); targets' points and normals (3, t) and weights (t,)."""
 
     centroids: np.ndarray
     points: np.ndarray
@@ -91,19 +105,15 @@ class _Surface:
     @classmethod
     def of(cls, mesh: TriMesh, sample: FaceSample) -> "_Surface":
         centroids = face_centroids(mesh)
+        # Only directions are taken from them, and float32 keeps these best near the origin, at a scale of one.
+        centroids -= centroids.mean(axis=0)
+        centroids /= max(float(np.abs(centroids).max()), np.finfo(np.float64).tiny)
         return cls(
             centroids.astype(np.float32),
             np.ascontiguousarray(centroids[sample.faces].T, dtype=np.float32),
             np.ascontiguousarray(face_normals(mesh)[sample.faces].T, dtype=np.float32),
             (sample.areas / sample.areas.sum()).astype(np.float32),
         )
-
-
-def _fill(fields: np.ndarray, batches: np.ndarray, graph: FaceGraph, sample: FaceSample) -> None:
-    """Geodesics of these batches of targets into fields (b, nodes, LANES)."""
-    geodesic_batches(
-        graph.starts, graph.neighbours, graph.lengths, sample.faces, sample.component_starts, batches, fields
-    )
 
 
 def _bin(
@@ -148,12 +158,12 @@ def _inner_edges(edges: np.ndarray) -> np.ndarray:
 def _reference_distance(fields: np.ndarray, batches: np.ndarray, graph: FaceGraph, sample: FaceSample) -> float:
     """g95: the REFERENCE_QUANTILE of the finite geodesics of face pairs, 0 if there are none.
 
-    A target counts once for each face of its cell. Two rounds of histograms narrow it to 2^-24 of the greatest, which
-    is what float32 resolves, without sorting (or copying) millions of values.
+    A target counts once for each face of its cell, and those of these batches stand for their whole component. Two
+    rounds of histograms narrow it to 2^-24 of the greatest, what float32 resolves, without sorting millions of values.
     """
     n_bins = 4096
     low, high = 0.0, float(kernels.greatest_distance(fields, graph.n_faces))
-    weights = sample.n_cell_faces.astype(np.float64)
+    weights = _face_counts(sample, LANES * len(batches))
     wanted = None
     for _ in range(2):
         if not high > low:
@@ -166,3 +176,14 @@ def _reference_distance(fields: np.ndarray, batches: np.ndarray, graph: FaceGrap
         step = (high - low) / n_bins
         low, high = low + found * step, low + (found + 1) * step
     return high
+
+
+def _face_counts(sample: FaceSample, n_first: int) -> np.ndarray:
+    """Faces that each of the n_first first targets of a component stands for, (t,) float64; 0 for those after them."""
+    starts = sample.component_starts
+    component = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    is_first = np.arange(len(sample.faces)) - starts[component] < n_first
+    counts = np.where(is_first, sample.n_cell_faces, 0).astype(np.float64)
+    n_faces = np.bincount(component, weights=sample.n_cell_faces, minlength=len(starts) - 1)
+    n_counted = np.bincount(component, weights=counts, minlength=len(starts) - 1)
+    return counts * (n_faces / np.maximum(n_counted, 1))[component]

@@ -36,8 +36,8 @@ def spin_image(mesh: TriMesh, parameters: SpinImageParameters | None = None) -> 
     result: np.ndarray = spin_images(
         face_centroids(mesh).astype(np.float32),
         face_normals(mesh).astype(np.float32),
-        mesh.vertices[used].astype(np.float32),
-        vertex_normals(mesh)[used].astype(np.float32),
+        np.ascontiguousarray(mesh.vertices[used].T, dtype=np.float32),
+        np.ascontiguousarray(vertex_normals(mesh)[used].T, dtype=np.float32),
         (areas[used] / max(areas.sum(), np.finfo(np.float64).tiny)).astype(np.float32),
         parameters.support,
         parameters.n_bins,

@@ -46,6 +46,7 @@ class ManifoldReport:
 def manifold_report(mesh: TriMesh) -> ManifoldReport:
     """Examines connectivity by shared vertex indices (not positions). Components are counted across edges."""
     half_edges = mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    half_edges = half_edges[half_edges[:, 0] != half_edges[:, 1]]  # a degenerate face's loop at a vertex is no edge
     edges, edge_of, uses = np.unique(np.sort(half_edges, axis=1), axis=0, return_inverse=True, return_counts=True)
     forward = np.zeros(len(edges), dtype=np.int64)
     np.add.at(forward, edge_of.ravel(), half_edges[:, 0] < half_edges[:, 1])

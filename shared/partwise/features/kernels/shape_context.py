@@ -13,8 +13,10 @@ from numba import njit, prange
 
 from partwise.geometry.kernels.geodesics import LANES
 
+# error_model="numpy": a division that could raise would keep its loop from becoming vector instructions.
 
-@njit(cache=True, parallel=True)
+
+@njit(cache=True, parallel=True, error_model="numpy")
 def greatest_distance(fields, n_faces):
     """The greatest finite distance, 0 if there is none."""
     greatest = np.zeros(len(fields), np.float32)
@@ -27,7 +29,7 @@ def greatest_distance(fields, n_faces):
     return greatest.max()
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def distance_histogram(fields, batches, component, targets, target_starts, weights, low, high, n_bins):
     """Weight of the pairs (face, target) below `low`, and in n_bins equal bins over [low, high]; no self pairs."""
     below = np.zeros(len(batches))
@@ -47,7 +49,7 @@ def distance_histogram(fields, batches, component, targets, target_starts, weigh
     return below.sum(), inside.sum(axis=0)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _sines(points, normals, x, y, z, first, last, sine):
     """Sine of the angle of targets first … last − 1 seen from (x, y, z); 0 where the two coincide."""
     # Slices and not offsets: an index that may be negative keeps the loop from becoming vector instructions.
@@ -60,7 +62,7 @@ def _sines(points, normals, x, y, z, first, last, sine):
         sine[lane] = along / np.sqrt(max(square, np.float32(1e-30)))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _count_passed(values, edges, stride, bins, n):
     """Adds `stride` to each of n bins for every edge that its value has reached; edges come in multiples of 8."""
     for at in range(0, len(edges), 8):
@@ -72,14 +74,14 @@ def _count_passed(values, edges, stride, bins, n):
             bins[lane] += passed * stride
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _deposit(row, bins, distance, limit, weights, weight_offset, targets, face):
     for lane in range(len(targets)):
         if distance[lane] < limit and targets[lane] != face:
             row[bins[lane]] += weights[lane] / (distance[lane] + weight_offset)
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def add_to_histograms(
     fields, batches, component, targets, target_starts, points, normals, weights,
     centroids, reference, limit, weight_offset, sine_edges, distance_edges, n_distance_bins, histograms,

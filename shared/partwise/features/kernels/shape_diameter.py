@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit, prange
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def inward_rays(centroids, normals, tangents, disk, offset, first, count):
     """Origins and unit directions, (count · rays, 3) float32, of the cones of faces first … first + count − 1.
 
@@ -28,7 +28,7 @@ def inward_rays(centroids, normals, tangents, disk, offset, first, count):
     return origins, directions
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def robust_means(hits, directions, centroids, normals, points, first, spread, out):
     """Mean ray length of faces first … into out, NaN where no ray counts.
 
@@ -65,7 +65,7 @@ def robust_means(hits, directions, centroids, normals, points, first, spread, ou
             out[k] = total / kept if kept > 0 else median
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _rings(face, n_rings, starts, neighbours, found, ring):
     """Faces within n_rings steps of `face`, itself first, with their ring; returns how many (at most len(found))."""
     found[0], ring[0] = face, 0
@@ -85,7 +85,7 @@ def _rings(face, n_rings, starts, neighbours, found, ring):
     return n
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def smooth_bilaterally(values, starts, neighbours, n_rings, range_factor):
     """Mean over the rings around each face, weighted by ring (σ = n_rings/2) and likeness (σ = factor · local RMS)."""
     result = np.empty_like(values)

@@ -15,7 +15,7 @@ LANES = 32
 """Distance fields advanced together by `geodesic_batches`: the inner loop over them compiles to vector instructions."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _gather_neighbours(face, faces, vertex_starts, vertex_faces, is_hub, stamp, row):
     """Distinct faces around `face` through its ordinary vertices, into `row`; returns their number."""
     n = 0
@@ -33,12 +33,12 @@ def _gather_neighbours(face, faces, vertex_starts, vertex_faces, is_hub, stamp, 
     return n
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _distance(a, b):
     return np.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def build_face_graph(faces, vertices, centroids, vertex_starts, vertex_faces, hubs, hub_valence):
     """Compressed rows of the graph described in `partwise.geometry.geodesics.FaceGraph`."""
     m, n_vertices = len(faces), len(vertices)
@@ -80,7 +80,7 @@ def build_face_graph(faces, vertices, centroids, vertex_starts, vertex_faces, hu
     return starts, neighbours, lengths
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _push(keys, nodes, size, key, node):
     i = size
     while i > 0:
@@ -93,7 +93,7 @@ def _push(keys, nodes, size, key, node):
     return size + 1
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _drop_top(keys, nodes, size):
     size -= 1
     key, node = keys[size], nodes[size]
@@ -112,7 +112,7 @@ def _drop_top(keys, nodes, size):
     return size
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _settle(starts, neighbours, lengths, distance, order, keys, nodes, size, limit):
     """Dijkstra from what is in the heap; lowers `distance`, fills `order` with the settled nodes, returns how many."""
     n_settled = 0
@@ -132,7 +132,7 @@ def _settle(starts, neighbours, lengths, distance, order, keys, nodes, size, lim
     return n_settled
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def geodesics_from(starts, neighbours, lengths, sources, limit, n_faces):
     """One Dijkstra a source, in parallel: (k, n_faces) float32, infinity beyond `limit` or out of reach."""
     n_nodes = len(starts) - 1
@@ -149,7 +149,7 @@ def geodesics_from(starts, neighbours, lengths, sources, limit, n_faces):
     return result
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _central_order(starts, neighbours, lengths, targets, target_starts, batch, order):
     """Nodes in order of distance from the middle source of each component in this batch; returns how many."""
     n_nodes = len(starts) - 1
@@ -167,7 +167,7 @@ def _central_order(starts, neighbours, lengths, targets, target_starts, batch, o
     return _settle(starts, neighbours, lengths, distance, order, keys, nodes, size, np.float32(np.inf))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _sweep(starts, neighbours, lengths, order, position, is_changed, distance):
     """Relaxes changed nodes in `order`, then in reverse, and so on until nothing changes."""
     forward, n_left = True, 1
@@ -193,7 +193,7 @@ def _sweep(starts, neighbours, lengths, order, position, is_changed, distance):
         forward = not forward
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, parallel=True, error_model="numpy")
 def geodesic_batches(starts, neighbours, lengths, targets, target_starts, batches, out):
     """Fields of LANES targets at once: out[b, node, lane] for the target at target_starts[c] + LANES·batches[b] + lane.
 
@@ -219,7 +219,7 @@ def geodesic_batches(starts, neighbours, lengths, targets, target_starts, batche
         _sweep(starts, neighbours, lengths, order[:n_reached], position, is_changed, distance)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def farthest_points(starts, neighbours, lengths, candidates, candidate_starts, n_wanted):
     """Farthest-point sampling within each component: (targets, their number per component, nearest target per node).
 
