@@ -1,0 +1,1 @@
+"""The `partwise` command: the only place that composes stores, workers and service."""

@@ -56,6 +56,7 @@ class ManifestShape:
     mesh_hash : `TriMesh.content_hash` of the mesh that the labels belong to.
     source_hash : SHA-256 of the ingested source file.
     faces_per_part : part id → number of faces with it; −1 for unlabelled. Sums to `n_faces`.
+    model_version : of predicted and refined labels, which may come from different models; None for confirmed ones.
     """
 
     source_key: str
@@ -64,6 +65,7 @@ class ManifestShape:
     n_faces: int
     faces_per_part: dict[int, int]
     files: tuple[ManifestFile, ...]
+    model_version: int | None = None
 
     def __post_init__(self) -> None:
         _check_hash(self.mesh_hash, f"mesh_hash of {self.source_key}")
@@ -80,7 +82,6 @@ class ExportManifest:
     """Everything needed to know what an export is and to check that it is whole.
 
     segmentation : "confirmed", "refined" or "predicted".
-    model_version : of predicted and refined labels; None for confirmed ones.
 
     Raises
     ------
@@ -93,7 +94,6 @@ class ExportManifest:
     schema_version: int
     parts: tuple[ManifestPart, ...]
     segmentation: str
-    model_version: str | None
     shapes: tuple[ManifestShape, ...]
 
     def __post_init__(self) -> None:
@@ -101,17 +101,17 @@ class ExportManifest:
             raise ParameterError(
                 f"segmentation must be one of {SEGMENTATIONS} but is {self.segmentation!r}; choose one"
             )
-        if (self.model_version is None) != (self.segmentation == "confirmed"):
-            raise ParameterError(
-                f"predicted and refined labels must name their model, confirmed ones none, but {self.segmentation} "
-                f"labels have {self.model_version!r}"
-            )
         known = {part.id for part in self.parts} | {-1}
         if len(known) != len(self.parts) + 1:
             raise ParameterError(
                 f"part ids must be distinct but are {[part.id for part in self.parts]}; never reuse ids"
             )
         for shape in self.shapes:
+            if (shape.model_version is None) != (self.segmentation == "confirmed"):
+                raise ParameterError(
+                    f"predicted and refined labels must name their model, confirmed ones none, but {shape.source_key} "
+                    f"has {self.segmentation} labels of model {shape.model_version}"
+                )
             if strangers := shape.faces_per_part.keys() - known:
                 raise ParameterError(
                     f"{shape.source_key} has parts {sorted(strangers)} that the schema lacks; export under its version"

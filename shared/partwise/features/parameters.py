@@ -1,7 +1,7 @@
 """Parameters of the descriptors. They load nothing heavy, so that a configuration can be read anywhere."""
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from partwise.errors import ParameterError
 
 N_BINS = 16
 """Along each side of the histograms that blocks store and the network reads."""
-RENDERERS = ("auto", "gl", "raycast")
+RendererChoice = Literal["auto", "gl", "raycast"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class ShapeContextParameters:
     n_angle_bins: int = 16
     n_distance_bins: int = 16
     all_pairs_below: int = 5000
-    n_targets: int = 2000
+    n_targets: int = 5000
 
     def __post_init__(self) -> None:
         for name, least in (("n_angle_bins", 1), ("n_distance_bins", 1), ("all_pairs_below", 0), ("n_targets", 1)):
@@ -95,11 +95,12 @@ class LightFieldParameters:
     ParameterError : another renderer.
     """
 
-    renderer: Literal["auto", "gl", "raycast"] = "auto"
+    renderer: RendererChoice = "auto"
 
     def __post_init__(self) -> None:
-        if self.renderer not in RENDERERS:
-            raise ParameterError(f"renderer must be one of {', '.join(RENDERERS)} but is {self.renderer!r}; correct it")
+        if self.renderer not in get_args(RendererChoice):
+            choices = ", ".join(get_args(RendererChoice))
+            raise ParameterError(f"renderer must be one of {choices} but is {self.renderer!r}; correct it")
 
 
 @dataclass(frozen=True, slots=True)

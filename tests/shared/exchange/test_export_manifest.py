@@ -19,9 +19,9 @@ from partwise.exchange.export_manifest import (
 
 HASH = "0123456789abcdef" * 4
 FILE = ManifestFile("chairs/1.seg", HASH)
-SHAPE = ManifestShape("1.off", HASH, HASH, 10, {0: 6, 2: 3, -1: 1}, (FILE,))
+SHAPE = ManifestShape("1.off", HASH, HASH, 10, {0: 6, 2: 3, -1: 1}, (FILE,), 17)
 PARTS = (ManifestPart(0, "seat", "#ff0000"), ManifestPart(2, "leg", "#00ff00"))
-MANIFEST = ExportManifest("0.1.0", "chairs", 3, PARTS, "refined", "m-17", (SHAPE,))
+MANIFEST = ExportManifest("0.1.0", "chairs", 3, PARTS, "refined", (SHAPE,))
 
 
 def test_round_trip(tmp_path):
@@ -30,7 +30,8 @@ def test_round_trip(tmp_path):
 
 
 def test_confirmed_labels_name_no_model():
-    manifest = dataclasses.replace(MANIFEST, segmentation="confirmed", model_version=None)
+    shape = dataclasses.replace(SHAPE, model_version=None)
+    manifest = dataclasses.replace(MANIFEST, segmentation="confirmed", shapes=(shape,))
     assert read_manifest("m.json", manifest.to_json().encode()) == manifest
 
 
@@ -54,7 +55,7 @@ def test_json_names_its_format():
         (SHAPE, {"n_faces": 11}, "sum to 11"),
         (SHAPE, {"faces_per_part": {0: 11, 2: -1}}, "sum to 10"),
         (MANIFEST, {"segmentation": "guessed"}, "segmentation"),
-        (MANIFEST, {"model_version": None}, "must name their model"),
+        (MANIFEST, {"shapes": (dataclasses.replace(SHAPE, model_version=None),)}, "must name their model"),
         (MANIFEST, {"segmentation": "confirmed"}, "must name their model"),
         (MANIFEST, {"parts": PARTS[:1]}, r"parts \[2\] that the schema lacks"),
         (MANIFEST, {"parts": (*PARTS, PARTS[0])}, "distinct"),

@@ -1,0 +1,160 @@
+"""Leave one out over a labelled folder: train on all shapes but one, predict and refine that one."""
+
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from partwise.errors import NotEnoughDataError
+from partwise.exchange.labels_psb import read_psb_labels
+from partwise.geometry.faces import face_areas
+from partwise.io.read import read_mesh
+from partwise.learning.ensemble import predict
+from partwise.learning.fitting import Fitted, LabelledShape, fit
+from partwise.learning.recipe import Recipe
+from partwise.metrics.accuracy import accuracy, accuracy_by_area
+from partwise.segmentation.model_refinement import refine
+from partwise.store.records import RevisionKind
+from partwise.workspace.ingest import ingest_folder, mesh_files
+from partwise.workspace.labelling import PSB_ENDING, import_labels
+from partwise.workspace.progress import OnRunProgress
+from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
+from partwise_workers.cluster import connected
+from partwise_workers.passes import preprocess
+from partwise_workers.training import StoredShapes, labelled_shapes
+
+COLLECTION = "leave-one-out"
+OnTraining = Callable[[int, int, str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class HeldOut:
+    """One held-out shape: shares in [0, 1] of its faces and of its area that are right, before and after the cut."""
+
+    shape: str
+    n_faces: int
+    accuracy_raw: float
+    accuracy_refined: float
+    accuracy_raw_by_area: float
+    accuracy_refined_by_area: float
+    smoothness: float
+    train_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Means over the held-out shapes, and what they were measured with."""
+
+    category: str
+    preset: str
+    n_held_out: int
+    n_shapes: int
+    accuracy_raw: float
+    accuracy_refined: float
+    accuracy_raw_by_area: float
+    accuracy_refined_by_area: float
+    train_s: float
+
+
+def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> int:
+    """Ingests and describes the folder into a workspace, and returns how many are labelled. What is there is kept.
+
+    Raises
+    ------
+    NotEnoughDataError : fewer than two labelled shapes.
+    """
+    init_workspace(workspace_path)
+    with open_workspace(workspace_path) as workspace:
+        if not workspace.catalog.list_collections():
+            workspace.catalog.create_collection(COLLECTION, part_names_of(folder))
+        collection = workspace.catalog.get_collection(COLLECTION)
+        ingest_folder(workspace, collection, folder)
+        with connected():
+            preprocess(workspace, collection, on_progress)
+        import_labels(workspace, collection, folder, RevisionKind.IMPORTED, "benchmark")
+        n_labelled = sum(1 for _ in labelled_shapes(workspace, collection))
+    if n_labelled < 2:
+        raise NotEnoughDataError(f"leave one out needs 2 labelled shapes or more but {folder} has {n_labelled}")
+    return n_labelled
+
+
+def part_names_of(folder: Path) -> list[str]:
+    """Every part name that the folder's `_labels.txt` files use, sorted."""
+    names: set[str] = set()
+    for path in mesh_files(folder):
+        labels = path.with_name(path.stem + PSB_ENDING)
+        if labels.is_file():
+            names.update(read_psb_labels(labels, read_mesh(path).n_faces).part_names)
+    return sorted(names)
+
+
+def leave_one_out(
+    workspace: Workspace, recipe: Recipe, limit: int | None, on_training: OnTraining
+) -> Iterator[HeldOut]:
+    """Holds out `limit` evenly spaced shapes, one after the other; all of them without a limit."""
+    collection = workspace.catalog.get_collection(COLLECTION)
+    labelled = list(labelled_shapes(workspace, collection))
+    part_ids = workspace.catalog.parts(collection.id).ids
+    shapes = workspace.catalog.shapes_by_id([item.shape_id for item in labelled])
+    for held_out in evenly_spaced(len(labelled), limit):
+        name = shapes[labelled[held_out].shape_id].source_key
+        others = [item for item in labelled if item is not labelled[held_out]]
+        started = time.perf_counter()
+        fitted = fit(
+            StoredShapes(workspace.arrays, others, part_ids),
+            part_ids,
+            recipe,
+            workspace.config.refine,
+            lambda done, n_total, name=name: on_training(done, n_total, name),  # type: ignore[misc] # mypy cannot type the default
+            n_threads=os.cpu_count(),
+        )
+        train_s = time.perf_counter() - started
+        yield _judge(
+            name, StoredShapes(workspace.arrays, [labelled[held_out]], part_ids)[0], fitted, workspace, train_s
+        )
+
+
+def evenly_spaced(n: int, limit: int | None) -> list[int]:
+    """`limit` of the indices 0 … n−1, first and last among them; all without a limit."""
+    return sorted(set(np.linspace(0, n - 1, min(limit or n, n)).round().astype(int).tolist()))
+
+
+def summarise(results: Sequence[HeldOut], category: str, preset: str, n_shapes: int) -> Summary:
+    """Means over held-out shapes."""
+
+    def mean(name: str) -> float:
+        return round(float(np.mean([getattr(result, name) for result in results])), 5)
+
+    return Summary(
+        category,
+        preset,
+        len(results),
+        n_shapes,
+        mean("accuracy_raw"),
+        mean("accuracy_refined"),
+        mean("accuracy_raw_by_area"),
+        mean("accuracy_refined_by_area"),
+        mean("train_s"),
+    )
+
+
+def _judge(name: str, shape: LabelledShape, fitted: Fitted, workspace: Workspace, train_s: float) -> HeldOut:
+    refinement = workspace.config.refine
+    if fitted.tuning is not None:
+        refinement = replace(refinement, smoothness=fitted.tuning.smoothness)
+    probabilities = predict(fitted.model, shape.grids).probabilities
+    raw, refined = np.argmax(probabilities, axis=1), refine(shape.mesh, probabilities, refinement)
+    areas = face_areas(shape.mesh)
+    return HeldOut(
+        shape=name,
+        n_faces=shape.mesh.n_faces,
+        accuracy_raw=round(accuracy(raw, shape.classes), 5),
+        accuracy_refined=round(accuracy(refined, shape.classes), 5),
+        accuracy_raw_by_area=round(accuracy_by_area(raw, shape.classes, areas), 5),
+        accuracy_refined_by_area=round(accuracy_by_area(refined, shape.classes, areas), 5),
+        smoothness=refinement.smoothness,
+        train_s=round(train_s, 2),
+    )

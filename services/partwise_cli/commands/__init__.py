@@ -1,0 +1,1 @@
+"""The commands, grouped as `partwise --help` shows them. Each module has `register(app)`."""

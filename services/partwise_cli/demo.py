@@ -1,0 +1,162 @@
+"""The main job on simulated shapes, where ground truth can stand in for an annotator and judge the result."""
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from partwise.config import CONFIG_FILE
+from partwise.errors import ConfigError
+from partwise.io.atomic import write_atomically
+from partwise.store.records import Collection, RevisionKind
+from partwise.workspace.assessment import ShapeAccuracy, assess
+from partwise.workspace.export import ExportFormat, export_labels
+from partwise.workspace.first_shapes import select_first_shapes
+from partwise.workspace.ingest import ingest_folder
+from partwise.workspace.labelling import commit_labels, import_labels
+from partwise.workspace.queue import all_ranked
+from partwise.workspace.segmentations import Segmentation, reference_labels
+from partwise.workspace.workspace import INITIAL_CONFIG, Workspace, init_workspace, open_workspace
+from partwise_cli.pictures import write_worst_shapes
+from partwise_cli.simulated import SimulationRequest, write_collection
+from partwise_cli.terminal import progress, shape_progress
+from partwise_workers.cluster import connected
+from partwise_workers.passes import evaluate, preprocess, refine
+from partwise_workers.training import train_collection
+
+ANNOTATOR = "simulated annotator"
+SCORE = "entropy"
+N_WORST = 12
+
+
+@dataclass(frozen=True, slots=True)
+class DemoRequest:
+    """What `partwise demo` was asked for."""
+
+    category: str
+    n_shapes: int
+    n_confirmed: int
+    seed: int
+    n_iterations: int
+
+
+@dataclass(frozen=True, slots=True)
+class DemoReport:
+    """Accuracies of the shapes that nobody confirmed, in order of rank, the least certain first."""
+
+    request: DemoRequest
+    n_described: int
+    predicted: tuple[ShapeAccuracy, ...]
+    refined: tuple[ShapeAccuracy, ...]
+    model_version: int
+    seconds: dict[str, float]
+    shapes: Path
+    workspace: Path
+    exported: Path
+    picture: Path
+
+
+class _Stopwatch:
+    """Wall seconds by step."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._since = time.perf_counter()
+
+    def lap(self, step: str) -> None:
+        now = time.perf_counter()
+        self.seconds[step] = now - self._since
+        self._since = now
+
+
+def run_demo(out: Path, request: DemoRequest) -> DemoReport:
+    """Runs every step into `out`.
+
+    Raises
+    ------
+    ConfigError : `out` already holds something.
+    """
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise ConfigError(f"the demo needs an empty folder but {out} holds something; remove it or name another")
+    shapes, workspace_path = out / "shapes", out / "workspace"
+    watch = _Stopwatch()
+    simulation = SimulationRequest(request.category, request.n_shapes, request.seed)
+    with progress("simulate") as on_progress:
+        write_collection(simulation, shapes, on_progress)
+    watch.lap("simulate")
+    _init(workspace_path, request)
+    with connected(), open_workspace(workspace_path) as workspace:
+        collection = workspace.catalog.create_collection(request.category, simulation.part_names, {"up": "y"})
+        watch.lap("init")
+        ingest_folder(workspace, collection, shapes)
+        watch.lap("ingest")
+        with shape_progress("preprocess") as on_run:
+            described = preprocess(workspace, collection, on_run)
+        watch.lap("preprocess")
+        import_labels(workspace, collection, shapes, RevisionKind.REFERENCE, "simulation")
+        confirmed = _confirm_first_shapes(workspace, collection, request)
+        watch.lap("select and confirm")
+        return _learn_and_report(out, request, workspace, collection, described.n_done, confirmed, watch)
+
+
+def _init(path: Path, request: DemoRequest) -> None:
+    settings = f"\n[train]\nseed = {request.seed}\nn_iterations = {request.n_iterations}\n"
+    write_atomically(path / CONFIG_FILE, (INITIAL_CONFIG + settings).encode())
+    init_workspace(path)
+
+
+def _confirm_first_shapes(workspace: Workspace, collection: Collection, request: DemoRequest) -> set[int]:
+    """The simulated annotator labels the first shapes as ground truth says. Returns their ids."""
+    firsts = select_first_shapes(workspace, collection, request.n_confirmed, 1, request.seed)
+    shapes = workspace.catalog.shapes_by_id([first.shape_id for first in firsts])
+    for shape in shapes.values():
+        truth = reference_labels(workspace, shape)
+        if truth is not None:
+            commit_labels(workspace, collection, shape, truth, RevisionKind.HUMAN, ANNOTATOR)
+    return set(shapes)
+
+
+def _learn_and_report(
+    out: Path,
+    request: DemoRequest,
+    workspace: Workspace,
+    collection: Collection,
+    n_described: int,
+    confirmed: set[int],
+    watch: _Stopwatch,
+) -> DemoReport:
+    with progress("train") as on_progress:
+        model = train_collection(workspace, collection, on_progress)
+    watch.lap("train")
+    for name, run in (("evaluate", evaluate), ("refine", refine)):
+        with shape_progress(name) as on_run:
+            run(workspace, collection, on_run)
+        watch.lap(name)
+    exported = out / "labels"
+    export_labels(workspace, collection, Segmentation.REFINED, ExportFormat.PLY, exported)
+    watch.lap("export")
+    ranked = [row.shape for row in all_ranked(workspace, collection, SCORE) if row.shape.id not in confirmed]
+    order = {shape.id: rank for rank, shape in enumerate(ranked)}
+    predicted, refined = (
+        tuple(
+            sorted(
+                (a for a in assess(workspace, collection, segmentation) if a.shape.id in order),
+                key=lambda a: order[a.shape.id],
+            )
+        )
+        for segmentation in (Segmentation.PREDICTED, Segmentation.REFINED)
+    )
+    picture = out / "worst.png"
+    write_worst_shapes(workspace, collection, ranked[:N_WORST], refined, picture)
+    watch.lap("picture")
+    return DemoReport(
+        request,
+        n_described,
+        predicted,
+        refined,
+        model.version,
+        watch.seconds,
+        out / "shapes",
+        workspace.path,
+        exported,
+        picture,
+    )

@@ -1,0 +1,55 @@
+"""What the demo shows at its end."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from partwise.workspace.assessment import ShapeAccuracy
+from partwise_cli.demo import DemoReport
+from partwise_cli.terminal import console, print_table
+
+
+def print_report(report: DemoReport) -> None:
+    """Accuracy, how well the ranking tells good from bad, times, and where the files are."""
+    rows = [
+        (name, *(f"{value:.1%}" for value in row.values())) for name, row in report_as_json(report)["accuracy"].items()
+    ]
+    title = (
+        f"{len(report.refined)} {report.request.category} nobody labelled, after {report.request.n_confirmed} confirmed"
+    )
+    print_table(
+        title,
+        ("share of labels right", "predicted", "refined", "predicted, by area", "refined, by area"),
+        rows,
+        (1, 2, 3, 4),
+    )
+    times = ", ".join(f"{step} {seconds:.0f} s" for step, seconds in report.seconds.items())
+    console().print(f"[bold]Time[/bold]       {sum(report.seconds.values()):.0f} s: {times}")
+    for label, path in (
+        ("Shapes", report.shapes), ("Workspace", report.workspace), ("Labels", report.exported), ("Picture", report.picture)
+    ):  # fmt: skip
+        console().print(f"[bold]{label:<10}[/bold] {path}", soft_wrap=True)
+    console().print(f"\nLook at the queue:  partwise queue {report.workspace}", soft_wrap=True)
+
+
+def report_as_json(report: DemoReport) -> dict[str, dict[str, dict[str, float]]]:
+    """The table as numbers, shares in [0, 1]."""
+    quarter = max(1, len(report.refined) // 4)
+    groups = {
+        "all": slice(None),
+        "most certain quarter": slice(-quarter, None),
+        "least certain quarter": slice(None, quarter),
+    }
+    return {"accuracy": {name: _means(report, rows) for name, rows in groups.items()}}
+
+
+def _means(report: DemoReport, rows: slice) -> dict[str, float]:
+    def mean(assessed: Sequence[ShapeAccuracy], by_area: bool) -> float:
+        return float(np.mean([a.by_area if by_area else a.by_face for a in assessed[rows]]))
+
+    return {
+        "predicted": mean(report.predicted, by_area=False),
+        "refined": mean(report.refined, by_area=False),
+        "predicted_by_area": mean(report.predicted, by_area=True),
+        "refined_by_area": mean(report.refined, by_area=True),
+    }

@@ -1,0 +1,61 @@
+"""Embeds the collection and chooses the shapes to label first."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import UInt8
+from safetensors.numpy import save
+
+from partwise.errors import NotEnoughDataError
+from partwise.selection.clustering import first_shapes
+from partwise.selection.embedding import fit_embedding
+from partwise.store.records import Collection, FirstShape, StageRun
+from partwise.workspace.segmentations import DESCRIBE
+from partwise.workspace.shapes import pages_of_shapes
+from partwise.workspace.workspace import Workspace
+
+LIGHT_FIELDS_AT_ONCE = 64
+"""Descriptors in memory at a time, 13 MB."""
+
+
+def select_first_shapes(
+    workspace: Workspace, collection: Collection, n_clusters: int, n_per_cluster: int, seed: int
+) -> list[FirstShape]:
+    """Fits the embedding on all described shapes, clusters it, and puts the shapes nearest each centre on record.
+
+    Raises
+    ------
+    NotEnoughDataError : fewer described shapes than were asked for.
+    """
+    described = list(_described(workspace, collection))
+    n_wanted = n_clusters * n_per_cluster
+    if len(described) < max(2, n_wanted):
+        raise NotEnoughDataError(
+            f"selecting {n_clusters} × {n_per_cluster} shapes needs {max(2, n_wanted)} described ones but "
+            f"{collection.name!r} has {len(described)}; run `partwise preprocess`, or ask for fewer"
+        )
+    fitting, clustering = np.random.default_rng(seed).spawn(2)
+    embedding = fit_embedding(_light_fields(workspace, described), fitting)
+    points = np.concatenate([embedding.project(batch) for batch in _light_fields(workspace, described)])
+    ids = [str(run.shape_id) for run in described]
+    chosen = first_shapes(points, ids, n_clusters, n_per_cluster, clustering)
+    key = f"embeddings/{collection.id}/{described[-1].key[:16]}-{len(described)}.safetensors"
+    shape_ids = np.array([run.shape_id for run in described], dtype=np.int64)
+    workspace.arrays.put_bytes(key, save({**embedding.to_arrays(), "points": points, "shape_ids": shape_ids}))
+    workspace.catalog.set_embedding(collection.id, key)
+    firsts = [FirstShape(int(first.id), ordinal, first.cluster) for ordinal, first in enumerate(chosen)]
+    workspace.catalog.replace_first_shapes(collection.id, firsts)
+    return firsts
+
+
+def _described(workspace: Workspace, collection: Collection) -> Iterator[StageRun]:
+    for page in pages_of_shapes(workspace.catalog, collection.id):
+        runs = workspace.catalog.stage_runs([shape.id for shape in page], DESCRIBE)
+        yield from (runs[shape.id] for shape in page if shape.id in runs)
+
+
+def _light_fields(workspace: Workspace, runs: list[StageRun]) -> Iterator[UInt8[np.ndarray, "b d"]]:
+    for start in range(0, len(runs), LIGHT_FIELDS_AT_ONCE):
+        batch = runs[start : start + LIGHT_FIELDS_AT_ONCE]
+        places = [(run.block_name, run.row) for run in batch if run.block_name is not None and run.row is not None]
+        yield np.stack([workspace.arrays.read(name, row, "light_field") for name, row in places])

@@ -1,0 +1,97 @@
+"""Ingest: a row and a content hash per file, and a copy of the file in the array store."""
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from partwise.errors import FileFormatError, NotFoundError
+from partwise.io.read import MESH_SUFFIXES, read_bytes
+from partwise.store.records import Collection, IngestOutcome, NewShape
+from partwise.workspace.workspace import Workspace
+
+BATCH = 256
+"""Files whose rows are committed together."""
+
+
+@dataclass(frozen=True, slots=True)
+class RefusedFile:
+    """A file that was not ingested, and why, in one line."""
+
+    source_key: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class IngestReport:
+    """What became of a folder's mesh files."""
+
+    n_added: int
+    n_unchanged: int
+    n_changed: int
+    refused: tuple[RefusedFile, ...]
+
+
+def source_object(source_hash: str, source_suffix: str) -> str:
+    """Where the array store keeps an ingested file: by content, so that copies share one object."""
+    return f"sources/{source_hash[:2]}/{source_hash}{source_suffix}"
+
+
+def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) -> IngestReport:
+    """Ingests every mesh file below the folder, by its relative path. Safe to repeat: what is known is left alone.
+
+    A file that cannot be read, is empty, or would change under a confirmed shape is refused; the rest goes on.
+
+    Raises
+    ------
+    NotFoundError : there is no such folder, or no mesh file in it.
+    """
+    if not folder.is_dir():
+        raise NotFoundError(f"ingest needs a folder but {folder} is not one; check the path")
+    counts = dict.fromkeys(IngestOutcome, 0)
+    refused: list[RefusedFile] = []
+    for paths in _batches(mesh_files(folder)):
+        new_shapes: list[NewShape] = []
+        for path in paths:
+            key = path.relative_to(folder).as_posix()
+            try:
+                new_shapes.append(_copy(workspace, path, key))
+            except FileFormatError as error:
+                refused.append(RefusedFile(key, str(error)))
+        for ingested in workspace.catalog.add_shapes(collection.id, new_shapes):
+            counts[ingested.outcome] += 1
+            if ingested.outcome is IngestOutcome.CONFLICT:
+                why = "the file changed but people have labelled its shape; ingest it under another name"
+                refused.append(RefusedFile(ingested.source_key, why))
+    if not refused and not any(counts.values()):
+        raise NotFoundError(f"ingest needs mesh files ({', '.join(sorted(MESH_SUFFIXES))}) but {folder} has none")
+    return IngestReport(
+        counts[IngestOutcome.ADDED], counts[IngestOutcome.UNCHANGED], counts[IngestOutcome.CHANGED], tuple(refused)
+    )
+
+
+def mesh_files(folder: Path) -> Iterator[Path]:
+    """Mesh files below a folder, in order of path; links and hidden files are passed over."""
+    for path in sorted(folder.rglob("*")):
+        if path.suffix.lower() in MESH_SUFFIXES and path.is_file() and not path.is_symlink() and path.name[0] != ".":
+            yield path
+
+
+def _batches(paths: Iterator[Path]) -> Iterator[list[Path]]:
+    while batch := list(islice(paths, BATCH)):
+        yield batch
+
+
+def _copy(workspace: Workspace, path: Path, key: str) -> NewShape:
+    try:
+        data = read_bytes(path)
+    except FileFormatError as error:
+        raise FileFormatError(f"{key}: {error}") from error
+    if not data.strip():
+        raise FileFormatError(f"{key}: a mesh file must have content but is empty; was the download cut off?")
+    new_shape = NewShape(key, hashlib.sha256(data).hexdigest(), path.suffix.lower())
+    target = source_object(new_shape.source_hash, new_shape.source_suffix)
+    if not workspace.arrays.exists(target):
+        workspace.arrays.put_bytes(target, data)
+    return new_shape

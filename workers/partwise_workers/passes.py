@@ -1,0 +1,102 @@
+"""The passes over a collection: preprocess, evaluate, refine. Each plans what is missing and runs it on Ray."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from partwise.errors import NotFoundError
+from partwise.segmentation.parameters import RefinementParameters
+from partwise.store.records import Collection, Model, NewMesh, NewScore
+from partwise.workspace.progress import OnRunProgress, RunProgress
+from partwise.workspace.workspace import Workspace
+from partwise_workers.actors import StagedResult
+from partwise_workers.cluster import connected
+from partwise_workers.model_store import ModelReference
+from partwise_workers.plan import plan_tasks
+from partwise_workers.runner import AlsoPublish, Published, StageRunner, nothing_else
+from partwise_workers.stage import Stage
+from partwise_workers.stages import evaluate as evaluate_stage
+from partwise_workers.stages import mesh as mesh_stage
+from partwise_workers.stages.describe import DescribeStage
+from partwise_workers.stages.evaluate import EvaluateStage
+from partwise_workers.stages.mesh import MeshStage
+from partwise_workers.stages.refine import RefineStage
+
+
+def preprocess(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
+    """Reads, checks and describes every shape that is not yet described as the configuration says."""
+    return _run(workspace, collection, _description_stages(workspace), (), on_progress, _meshes)
+
+
+def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
+    """Lets the newest model predict and score every described shape that it has not seen.
+
+    Raises
+    ------
+    NotFoundError : no model was trained yet.
+    """
+    model = newest_model(workspace, collection)
+    stage = EvaluateStage(ModelReference.of(model))
+
+    def scores(shape_id: int, result: StagedResult, row: int) -> Published:  # noqa: ARG001 - AlsoPublish's signature
+        return Published(
+            scores=tuple(NewScore(shape_id, model.id, name, result.summary[name]) for name in evaluate_stage.SCORES)
+        )
+
+    return _run(workspace, collection, (stage,), _description_stages(workspace), on_progress, scores)
+
+
+def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
+    """Graph cut on the newest model's probabilities, with the smoothness that its training chose.
+
+    Raises
+    ------
+    NotFoundError : no model was trained yet.
+    """
+    model = newest_model(workspace, collection)
+    stage = RefineStage(refinement_parameters(workspace, model), model.version)
+    earlier = (*_description_stages(workspace), EvaluateStage(ModelReference.of(model)))
+    return _run(workspace, collection, (stage,), earlier, on_progress, nothing_else)
+
+
+def newest_model(workspace: Workspace, collection: Collection) -> Model:
+    """The collection's newest model; NotFoundError if there is none."""
+    model = workspace.catalog.latest_model(collection.id)
+    if model is None:
+        raise NotFoundError(f"collection {collection.name!r} has no model yet; run `partwise train`")
+    return model
+
+
+def refinement_parameters(workspace: Workspace, model: Model) -> RefinementParameters:
+    """Those of `partwise.toml`, with the smoothness that the model's training chose where it chose one."""
+    tuned = model.recipe.get("smoothness")
+    return workspace.config.refine if tuned is None else replace(workspace.config.refine, smoothness=tuned)
+
+
+def _description_stages(workspace: Workspace) -> tuple[Stage, Stage]:
+    return MeshStage(workspace.config.mesh), DescribeStage(workspace.config.describe)
+
+
+def _meshes(shape_id: int, result: StagedResult, row: int) -> Published:
+    if result.stage != mesh_stage.NAME:
+        return Published()
+    made = result.summary
+    return Published(meshes=(NewMesh(shape_id, made["hash"], made["n_vertices"], made["n_faces"], row),))
+
+
+def _run(
+    workspace: Workspace,
+    collection: Collection,
+    stages: Sequence[Stage],
+    earlier: Sequence[Stage],
+    on_progress: OnRunProgress,
+    also_publish: AlsoPublish,
+) -> RunProgress:
+    n_total = sum(1 for _ in plan_tasks(workspace, collection, stages, earlier))
+    on_progress(RunProgress(0, 0, n_total))
+    if n_total == 0:
+        return RunProgress(0, 0, 0)
+    with connected():
+        runner = StageRunner(
+            workspace.catalog, workspace.arrays, workspace.array_url, stages, workspace.config.workers, also_publish
+        )
+        return runner.run(plan_tasks(workspace, collection, stages, earlier), n_total, on_progress)

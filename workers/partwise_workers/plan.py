@@ -1,0 +1,56 @@
+"""Which stages each shape still needs, read from the catalog page by page."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from partwise.store.records import Collection, Shape, StageRun
+from partwise.workspace.ingest import source_object
+from partwise.workspace.shapes import pages_of_shapes
+from partwise.workspace.workspace import Workspace
+from partwise_workers.actors import BlockRow, ShapeTask, block_row
+from partwise_workers.stage import Stage, stage_key
+
+
+def plan_tasks(
+    workspace: Workspace, collection: Collection, stages: Sequence[Stage], earlier: Sequence[Stage] = ()
+) -> Iterator[ShapeTask]:
+    """Tasks for the shapes that need any of the stages, by shape id.
+
+    `earlier` and `stages` together are a chain, each reading the one before it and the first the source. A shape that
+    has not all of `earlier` under their present keys is passed over: its arrays would not fit together. So is a shape
+    that failed under the same key, until its failure is cleared or the key changes.
+    """
+    chain = [*earlier, *stages]
+    for page in pages_of_shapes(workspace.catalog, collection.id):
+        ids = [shape.id for shape in page]
+        done = {stage.name: workspace.catalog.stage_runs(ids, stage.name) for stage in chain}
+        failed = {stage.name: workspace.catalog.failed_runs(ids, stage.name) for stage in stages}
+        for shape in page:
+            done_here = {name: runs[shape.id] for name, runs in done.items() if shape.id in runs}
+            failed_here = {name: runs[shape.id].key for name, runs in failed.items() if shape.id in runs}
+            task = _plan(shape, chain, len(earlier), done_here, failed_here)
+            if task is not None:
+                yield task
+
+
+def _plan(
+    shape: Shape, chain: Sequence[Stage], n_earlier: int, done: Mapping[str, StageRun], failed: Mapping[str, str]
+) -> ShapeTask | None:
+    key = shape.source_hash
+    finished: dict[str, BlockRow] = {}
+    needed: list[tuple[str, str]] = []
+    for position, stage in enumerate(chain):
+        key = stage_key(stage, key)
+        run = done.get(stage.name)
+        place = block_row(run)
+        if run is not None and run.key == key and place is not None and not needed:
+            finished[stage.name] = place
+        elif position < n_earlier:
+            return None
+        elif failed.get(stage.name) == key:
+            break
+        else:
+            needed.append((stage.name, key))
+    if not needed:
+        return None
+    source = source_object(shape.source_hash, shape.source_suffix)
+    return ShapeTask(shape.id, shape.source_key, source, tuple(needed), finished)

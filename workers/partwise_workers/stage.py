@@ -1,0 +1,60 @@
+"""What a stage is: one shape's arrays in, one shape's arrays out, under a key that says what shaped them.
+
+The key is a hash of the stage's name, code version and parameters and of the key of what it reads, so that running
+again does nothing, and changing one stage's parameters redoes that stage and those after it, no more.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from partwise.store.array_store import ArrayStore
+from partwise.store.blocks import BlockKind
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StageResult:
+    """arrays : one per quantity of the stage's block kind. summary : a small JSON-able account, kept in the catalog."""
+
+    arrays: Mapping[str, np.ndarray]
+    summary: Mapping[str, Any]
+
+
+class ShapeInputs(Protocol):
+    """What a stage may read of the shape in hand."""
+
+    def source(self) -> tuple[bytes, str]:
+        """The ingested file's bytes and its name, whose suffix tells the format."""
+
+    def array(self, stage: str, quantity: str) -> np.ndarray:
+        """One array that an earlier stage made of this shape."""
+
+
+class Stage(Protocol):
+    """A frozen, picklable recipe. `open` is called once in each actor and may be costly (renderers, models)."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def reads(self) -> str | None:
+        """The stage before this one, whose key is part of this one's; None for the ingested source."""
+
+    @property
+    def block_kind(self) -> BlockKind: ...
+
+    @property
+    def identity(self) -> Mapping[str, object]:
+        """Code version and parameters, JSON-able: all that shapes the result besides what is read."""
+
+    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]: ...
+
+
+def stage_key(stage: Stage, input_key: str) -> str:
+    """SHA-256 (hex) over what shapes the stage's result; `input_key` is the source's hash or the read stage's key."""
+    content = {"stage": stage.name, "identity": stage.identity, "input": input_key}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

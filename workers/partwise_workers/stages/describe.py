@@ -1,0 +1,61 @@
+"""Stage `describe`: shape context, spin image, shape diameter and light-field descriptor of the stored mesh."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from partwise.features.describe import Describer
+from partwise.features.parameters import DescribeParameters
+from partwise.store.array_store import ArrayStore
+from partwise.store.block_kinds import FEATURES
+from partwise.store.blocks import BlockKind
+from partwise.store.quantise import quantise
+from partwise_workers.stage import ShapeInputs, StageResult
+from partwise_workers.stages import mesh as mesh_stage
+
+NAME = "describe"
+
+
+@dataclass(frozen=True, slots=True)
+class DescribeStage:
+    """The renderer is not part of the identity: both kinds are tested to agree."""
+
+    parameters: DescribeParameters
+
+    @property
+    def name(self) -> str:
+        return NAME
+
+    @property
+    def reads(self) -> str:
+        return mesh_stage.NAME
+
+    @property
+    def block_kind(self) -> BlockKind:
+        return FEATURES
+
+    @property
+    def identity(self) -> Mapping[str, object]:
+        parameters = asdict(self.parameters)
+        del parameters["light_field"]["renderer"]
+        return {"version": 1, **parameters}
+
+    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]:  # noqa: ARG002 - the protocol's
+        describer = Describer(self.parameters)
+
+        def run(inputs: ShapeInputs) -> StageResult:
+            description = describer.describe(mesh_stage.stored_mesh(inputs))
+            shape_context = quantise(description.shape_context)
+            spin_image = quantise(description.spin_image)
+            arrays_made = {
+                "shape_context": shape_context.codes,
+                "shape_context_scale": np.asarray(shape_context.scale),
+                "spin_image": spin_image.codes,
+                "spin_image_scale": np.asarray(spin_image.scale),
+                "shape_diameter": description.shape_diameter,
+                "light_field": description.light_field,
+            }
+            return StageResult(arrays_made, {"core_s": description.core_s})
+
+        return run

@@ -1,0 +1,67 @@
+"""Stage `mesh`: reads the ingested file, checks it, and stores it as float32 vertices and uint32 faces."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from partwise.config import MeshConfig
+from partwise.errors import MeshError
+from partwise.geometry.manifold import manifold_report
+from partwise.io.read import read_mesh
+from partwise.mesh import TriMesh
+from partwise.store.array_store import ArrayStore
+from partwise.store.block_kinds import MESH
+from partwise.store.blocks import BlockKind
+from partwise_workers.stage import ShapeInputs, StageResult
+
+NAME = "mesh"
+
+
+@dataclass(frozen=True, slots=True)
+class MeshStage:
+    """Refuses meshes over the face budget. Everything else goes on as it is, with what it is like in the summary."""
+
+    config: MeshConfig
+
+    @property
+    def name(self) -> str:
+        return NAME
+
+    @property
+    def reads(self) -> None:
+        return None
+
+    @property
+    def block_kind(self) -> BlockKind:
+        return MESH
+
+    @property
+    def identity(self) -> Mapping[str, object]:
+        return {"version": 1, **asdict(self.config)}
+
+    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]:  # noqa: ARG002 - the protocol's
+        return self._run
+
+    def _run(self, inputs: ShapeInputs) -> StageResult:
+        data, file_name = inputs.source()
+        mesh = read_mesh(file_name, data)
+        if mesh.n_faces > self.config.max_faces:
+            raise MeshError(
+                f"a mesh may have at most {self.config.max_faces:,} faces but {file_name} has {mesh.n_faces:,}; "
+                "simplify it, or raise max_faces under [mesh] in partwise.toml"
+            )
+        report = asdict(manifold_report(mesh))
+        summary = {
+            "hash": mesh.content_hash(),
+            "n_vertices": mesh.n_vertices,
+            "n_faces": mesh.n_faces,
+            "report": report,
+        }
+        arrays = {"vertices": mesh.vertices.astype(np.float32), "faces": mesh.faces.astype(np.uint32)}
+        return StageResult(arrays, summary)
+
+
+def stored_mesh(inputs: ShapeInputs) -> TriMesh:
+    """The mesh that this stage made of the shape in hand."""
+    return TriMesh(inputs.array(NAME, "vertices"), inputs.array(NAME, "faces"))

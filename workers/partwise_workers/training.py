@@ -1,0 +1,177 @@
+"""Trains a model on every labelled shape of a collection, in one actor that has all cores, and puts it on record."""
+
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, overload
+
+import numpy as np
+import ray
+from jaxtyping import UInt16
+
+from partwise.config import TrainConfig
+from partwise.errors import NotEnoughDataError, PartwiseError
+from partwise.learning.dataset import CodedGrids
+from partwise.learning.fitting import LabelledShape, fit
+from partwise.learning.recipe import Recipe
+from partwise.mesh import TriMesh
+from partwise.segmentation.parameters import RefinementParameters
+from partwise.store.array_store import ArrayStore
+from partwise.store.open import open_array_store
+from partwise.store.records import Collection, Model, NewModel
+from partwise.workspace.segmentations import DESCRIBE, MESH
+from partwise.workspace.workspace import Workspace
+from partwise_workers.actors import BlockRow, block_row
+from partwise_workers.cluster import connected, n_cores
+from partwise_workers.model_store import write_model
+
+BRANCHES = ("shape_context", "spin_image")
+POLL_S = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrainingShape:
+    """Where one labelled shape's arrays are, and its labels: (m,) uint16 part ids, 0 = unlabelled."""
+
+    shape_id: int
+    revision_id: int
+    mesh: BlockRow
+    features: BlockRow
+    labels: UInt16[np.ndarray, " m"]
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingResult:
+    """weights_key : in the array store. recipe : how the model came to be, JSON-able, with the smoothness chosen."""
+
+    weights_key: str
+    recipe: dict[str, Any]
+
+
+class StoredShapes(Sequence[LabelledShape]):
+    """Labelled shapes that are read from their blocks when they are indexed, so that few are in memory at once."""
+
+    def __init__(self, arrays: ArrayStore, shapes: Sequence[TrainingShape], part_ids: tuple[int, ...]) -> None:
+        self._arrays = arrays
+        self._shapes = shapes
+        self._class_of = np.full(max(part_ids) + 1, -1, dtype=np.int64)
+        self._class_of[list(part_ids)] = np.arange(len(part_ids))
+
+    def __len__(self) -> int:
+        return len(self._shapes)
+
+    @overload
+    def __getitem__(self, index: int) -> LabelledShape: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> "StoredShapes": ...
+
+    def __getitem__(self, index: int | slice) -> "LabelledShape | StoredShapes":
+        if isinstance(index, slice):
+            raise TypeError("stored shapes are read one at a time; index them with integers")
+        shape = self._shapes[index]
+        mesh = self._arrays.read_many(shape.mesh.block_name, shape.mesh.row, ("vertices", "faces"))
+        names = [*BRANCHES, *(f"{branch}_scale" for branch in BRANCHES)]
+        features = self._arrays.read_many(shape.features.block_name, shape.features.row, names)
+        grids = {branch: CodedGrids(features[branch], features[f"{branch}_scale"]) for branch in BRANCHES}
+        return LabelledShape(TriMesh(mesh["vertices"], mesh["faces"]), grids, self._class_of[shape.labels])
+
+
+class _Trainer:
+    """Fits one model. `progress` may be asked while `fit` runs: the actor has two threads."""
+
+    def __init__(self, array_url: str) -> None:
+        self._arrays = open_array_store(array_url)
+        self._done = (0, 0)
+
+    def fit(
+        self,
+        shapes: Sequence[TrainingShape],
+        part_ids: tuple[int, ...],
+        recipe: Recipe,
+        refinement: RefinementParameters | None,
+        n_threads: int,
+    ) -> TrainingResult:
+        started = time.perf_counter()
+        stored = StoredShapes(self._arrays, shapes, part_ids)
+        fitted = fit(stored, part_ids, recipe, refinement, self._note, n_threads)
+        account: dict[str, Any] = {"recipe": asdict(recipe), "train_s": round(time.perf_counter() - started, 3)}
+        if fitted.tuning is not None:
+            account["smoothness"] = fitted.tuning.smoothness
+            account["tuning"] = asdict(fitted.tuning)
+        return TrainingResult(write_model(self._arrays, fitted.model), account)
+
+    def progress(self) -> tuple[int, int]:
+        """Iterations done, and in all; (0, 0) before training begins."""
+        return self._done
+
+    def _note(self, done: int, n_total: int) -> None:
+        self._done = (done, n_total)
+
+
+Trainer = ray.remote(_Trainer)
+
+
+def train_collection(workspace: Workspace, collection: Collection, on_progress: Callable[[int, int], None]) -> Model:
+    """Trains on the newest human or imported labels of every shape; the model is one more version of the collection's.
+
+    Raises
+    ------
+    NotEnoughDataError : no shape has labels on its present, described mesh.
+    """
+    shapes = list(labelled_shapes(workspace, collection))
+    part_ids = tuple(sorted({int(part) for shape in shapes for part in np.unique(shape.labels) if part}))
+    if not part_ids:
+        raise NotEnoughDataError(
+            f"training needs labelled shapes but {collection.name!r} has none; confirm those `partwise select` names"
+        )
+    config = workspace.config.train
+    refinement = workspace.config.refine if config.tune_smoothness else None
+    with connected():
+        n_threads = min(n_cores(), os.cpu_count() or 1)
+        actor: Any = Trainer.options(num_cpus=n_threads, max_concurrency=2).remote(workspace.array_url)
+        try:
+            pending = actor.fit.remote(shapes, part_ids, recipe_of(config), refinement, n_threads)
+            result = _wait(actor, pending, on_progress)
+        finally:
+            ray.kill(actor)
+    revision_ids = tuple(shape.revision_id for shape in shapes)
+    return workspace.catalog.save_model(NewModel(collection.id, result.recipe, result.weights_key, revision_ids))
+
+
+def recipe_of(config: TrainConfig) -> Recipe:
+    """The recipe that `[train]` of `partwise.toml` describes."""
+    values = asdict(config)
+    del values["tune_smoothness"]
+    return Recipe(**values)
+
+
+def _wait(
+    actor: Any, pending: ray.ObjectRef[TrainingResult], on_progress: Callable[[int, int], None]
+) -> TrainingResult:
+    while not ray.wait([pending], timeout=POLL_S)[0]:
+        done, n_total = ray.get(actor.progress.remote())
+        if n_total:
+            on_progress(done, n_total)
+    try:
+        result: TrainingResult = ray.get(pending)
+    except ray.exceptions.RayTaskError as error:
+        if isinstance(error.cause, PartwiseError):
+            raise error.cause from error
+        raise
+    return result
+
+
+def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[TrainingShape]:
+    """Every shape whose newest human or imported labels belong to the mesh that is described, by id."""
+    catalog, after = workspace.catalog, 0
+    while page := catalog.labelled_shapes(collection.id, after=after):
+        ids = [revision.shape_id for revision in page]
+        meshes, mesh_runs, runs = catalog.meshes(ids), catalog.stage_runs(ids, MESH), catalog.stage_runs(ids, DESCRIBE)
+        for revision in page:
+            shape_id = revision.shape_id
+            mesh, features = block_row(mesh_runs.get(shape_id)), block_row(runs.get(shape_id))
+            if mesh and features and meshes[shape_id].mesh_hash == revision.mesh_hash:
+                yield TrainingShape(shape_id, revision.id, mesh, features, catalog.labels(revision.id))
+        after = ids[-1]
