@@ -43,7 +43,7 @@ def decode_labels(encoded: EncodedLabels) -> UInt16[np.ndarray, " m"]:
     LabelError : the bytes are damaged, or disagree with the face count or the checksum.
     """
     try:
-        raw = bytes(Zstd().decode(encoded.blob))
+        raw = bytes(Zstd().decode(encoded.blob)) if encoded.n_faces else b""  # the codec refuses an empty frame
     except RuntimeError as error:
         raise LabelError(f"a label blob must be one zstd frame but: {error}; restore it from a backup") from error
     if len(raw) != 2 * encoded.n_faces:

@@ -1,8 +1,7 @@
 """A block as a Zarr v3 group: one sharded array per quantity, a pointer array per domain, a listing in its attributes.
 
 Shards hold chunks of 4,096 rows, each compressed by itself, so that one shape is a ranged read. The group's metadata is
-written last: without it there is no block. Every chunk carries a checksum, and a missing shard is an error, where Zarr
-by itself would read zeros.
+written last: without it there is no block. Every chunk carries a checksum.
 """
 
 import hashlib
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import zarr
-from zarr.abc.store import ByteRequest, Store
+from zarr.abc.store import ByteRequest, RangeByteRequest, Store, SuffixByteRequest
 from zarr.codecs import Crc32cCodec, ZstdCodec
 from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import MemoryStore, StorePath, WrapperStore
@@ -25,13 +24,28 @@ _ATTRIBUTE = "partwise"
 
 
 class CompleteStore(WrapperStore[Store]):
-    """A Zarr store in which an absent object is an error: every shard of a block was written, even if all zeros."""
+    """A Zarr store in which an absent or short object is an error, where Zarr by itself would read zeros.
+
+    Every shard of a block is written, even one of zeros, so nothing is ever rightly absent.
+    """
 
     async def get(self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None) -> Buffer | None:
         found = await super().get(key, prototype, byte_range)
         if found is None:
             raise StoreError(f"the array store must hold {key} but does not; was its block deleted? Preprocess again")
+        if len(found) < _wanted_bytes(byte_range):
+            raise StoreError(
+                f"the array store must hold {_wanted_bytes(byte_range)} bytes of {key} where it holds {len(found)}; "
+                "delete its block and preprocess again"
+            )
         return found
+
+
+def _wanted_bytes(byte_range: ByteRequest | None) -> int:
+    """How many bytes a complete answer has at least."""
+    if isinstance(byte_range, RangeByteRequest):
+        return byte_range.end - byte_range.start
+    return byte_range.suffix if isinstance(byte_range, SuffixByteRequest) else 1
 
 
 def write_block(

@@ -1,7 +1,6 @@
 """The Zarr array store is an `ArrayStore`, on a local folder and on fsspec."""
 
 import uuid
-from pathlib import Path
 
 import pytest
 
@@ -11,9 +10,7 @@ from partwise.testing.array_store import ArrayStoreConformance
 
 
 class TestLocalFolder(ArrayStoreConformance):
-    @pytest.fixture
-    def store(self, tmp_path: Path) -> ZarrArrayStore:
-        return open_array_store(str(tmp_path / "arrays"))
+    """The `store` fixture is a folder."""
 
 
 class TestFsspec(ArrayStoreConformance):

@@ -148,7 +148,7 @@ def _stage_runs() -> None:
     )
     op.create_index("ix_stage_run_block_id", "stage_run", ["block_id"])
     current = {"sqlite": "status = 'done' AND is_superseded = 0", "postgresql": "status = 'done' AND NOT is_superseded"}
-    _partial_index("uq_stage_run_current", "stage_run", ["shape_id", "stage"], current[op.get_bind().dialect.name])
+    _partial_index("uq_stage_run_current", "stage_run", ["shape_id", "stage"], current[op.get_context().dialect.name])
     op.create_index(
         "ix_stage_run_failed",
         "stage_run",
@@ -246,7 +246,7 @@ def _partial_index(name: str, table: str, columns: list[str], condition: str) ->
 def _refuse_changes(table: str) -> None:
     """Triggers in the database itself, so that no program, not even this one, changes what was committed."""
     message = f"{table} is append-only"
-    if op.get_bind().dialect.name == "sqlite":
+    if op.get_context().dialect.name == "sqlite":
         for action in ("UPDATE", "DELETE"):
             op.execute(
                 f"CREATE TRIGGER {table}_no_{action.lower()} BEFORE {action} ON {table} "
