@@ -14,7 +14,7 @@ from partwise.simulate.chairs import CHAIR_PARTS, random_chair
 from partwise.simulate.lamps import LAMP_PARTS, random_lamp
 from partwise.simulate.mugs import MUG_PARTS, random_mug
 from partwise.simulate.planes import PLANE_PARTS, random_plane
-from partwise.simulate.realise import realise
+from partwise.simulate.realise import realise, require_one_piece
 from partwise.simulate.soup import realise_as_soup
 from partwise.simulate.tables import TABLE_PARTS, random_table
 
@@ -139,8 +139,9 @@ def simulate_shape(
         try:
             blueprint = chosen.draw(design)
             wanted = n_faces or _usual_face_count(meshing)
-            # The clean mesh is made either way only when it is wanted, so a dirty design may be a little looser.
             if dirty:
+                # So that clean and dirty shapes of one seed share one design.
+                require_one_piece(blueprint)
                 mesh, labels = realise_as_soup(blueprint, chosen.part_names, wanted, meshing)
             else:
                 mesh, labels = realise(blueprint, chosen.part_names, wanted)

@@ -186,8 +186,8 @@ def _shade(rng: np.random.Generator, radius: float, height: float, at: Vector) -
     shell: Solid = LatheShell(tuple((p[0], p[1]) for p in smooth_curve(knots, 14)), _WALL)
     if kind == "bowl":
         return (place(shell, (x, y + 0.5 * height, z)),)
-    # A spider of three bars carries the shell; it lies where the stem ends.
-    inner = belly * radius
+    # A spider of three bars carries the shell. It stays inside the wall and lies where the stem ends.
+    inner = belly * radius - 0.01
     turn = rng.uniform(0.0, np.pi)
     ends = [(inner * np.cos(turn + a), inner * np.sin(turn + a)) for a in np.arange(3) * 2.0 * np.pi / 3.0]
     spokes = [Rod((0.0, 0.55 * height, 0.0), (float(c), 0.5 * height, float(s)), 0.012, 0.012) for c, s in ends]

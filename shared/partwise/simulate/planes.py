@@ -14,14 +14,17 @@ def random_plane(rng: np.random.Generator) -> Blueprint:
     makers = (_airliner, _light_plane, _fighter, _glider, _biplane)
     pieces = makers[int(rng.choice(len(makers), p=[0.36, 0.22, 0.2, 0.1, 0.12]))](rng)
     deformation = Deformation(
-        twist=rng.normal(0.0, 0.02), bow=rng.normal(0.0, 0.08), ripples=random_ripples(rng, rng.uniform(0.002, 0.014))
+        taper=rng.normal(0.0, 0.25),
+        twist=rng.normal(0.0, 0.02),
+        bow=rng.normal(0.0, 0.08),
+        ripples=random_ripples(rng, rng.uniform(0.002, 0.014)),
     )
     return Blueprint(pieces, blend=rng.uniform(0.006, 0.026), deformation=deformation)
 
 
 def _airliner(rng: np.random.Generator) -> tuple[Piece, ...]:
     """Swept wings; two or four engines under them, two or three at the tail."""
-    radius = rng.uniform(0.055, 0.085)
+    radius = rng.uniform(0.05, 0.1)
     body = _fuselage(rng, radius, nose=rng.uniform(0.12, 0.2), blunt=0.8)
     y = rng.uniform(-0.6, 0.0) * radius if rng.random() < 0.75 else 0.7 * radius
     root, z, span = rng.uniform(0.24, 0.34), rng.uniform(0.1, 0.24), rng.uniform(0.48, 0.68)
@@ -42,7 +45,7 @@ def _airliner(rng: np.random.Generator) -> tuple[Piece, ...]:
 
 def _light_plane(rng: np.random.Generator) -> tuple[Piece, ...]:
     """Straight wings, high or low, and a propeller in front or one on either wing."""
-    radius = rng.uniform(0.06, 0.09)
+    radius = rng.uniform(0.06, 0.105)
     body = _fuselage(rng, radius, nose=rng.uniform(0.1, 0.16), blunt=0.9, slim=0.4)
     is_high = rng.random() < 0.5
     y = 0.85 * radius if is_high else -0.55 * radius
@@ -67,7 +70,7 @@ def _light_plane(rng: np.random.Generator) -> tuple[Piece, ...]:
 
 def _fighter(rng: np.random.Generator) -> tuple[Piece, ...]:
     """A pointed body, delta or cropped wings, one fin or two, nozzles for engines."""
-    radius = rng.uniform(0.055, 0.08)
+    radius = rng.uniform(0.05, 0.085)
     body = _fuselage(rng, radius, nose=rng.uniform(0.3, 0.45), blunt=0.25, slim=0.75)
     root = rng.uniform(0.38, 0.58)
     is_delta = rng.random() < 0.5
@@ -89,7 +92,7 @@ def _fighter(rng: np.random.Generator) -> tuple[Piece, ...]:
 
 def _glider(rng: np.random.Generator) -> tuple[Piece, ...]:
     """Long thin wings, a slim boom, usually a T tail, no engine."""
-    radius = rng.uniform(0.045, 0.06)
+    radius = rng.uniform(0.04, 0.065)
     body = _fuselage(rng, radius, nose=rng.uniform(0.15, 0.24), blunt=0.7, slim=0.28)
     root = rng.uniform(0.11, 0.15)
     wing = Wing(
@@ -107,7 +110,7 @@ def _glider(rng: np.random.Generator) -> tuple[Piece, ...]:
 
 def _biplane(rng: np.random.Generator) -> tuple[Piece, ...]:
     """Two wings above each other on struts, and a propeller."""
-    radius = rng.uniform(0.055, 0.075)
+    radius = rng.uniform(0.055, 0.09)
     body = _fuselage(rng, radius, nose=0.08, blunt=0.95, slim=0.35)
     root, span, z = rng.uniform(0.15, 0.2), rng.uniform(0.42, 0.58), rng.uniform(0.26, 0.34)
     gap, stagger = rng.uniform(0.16, 0.22), rng.uniform(0.0, 0.06)

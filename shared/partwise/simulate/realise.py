@@ -4,7 +4,6 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from partwise.errors import DegenerateMeshError
-from partwise.geometry.manifold import manifold_report
 from partwise.mesh import TriMesh
 from partwise.simulate.blueprint import Blueprint
 from partwise.simulate.contour import (
@@ -34,17 +33,13 @@ def realise(blueprint: Blueprint, part_names: tuple[str, ...], n_faces: int) -> 
     bounds = tight_bounds(blueprint.distance, blueprint.bounds())
     spacing = _spacing(bounds, blueprint.thickness)
     for _ in range(3):
-        fine, share = largest_component(contour(blueprint.distance, grid_over(bounds, spacing)))
-        if share < 1.0 - _MAX_DEBRIS:
-            raise DegenerateMeshError(
-                f"a shape must be one piece but its largest has {share:.1%} of the area; do all pieces touch?"
-            )
+        fine = _one_piece(blueprint, bounds, spacing)
         shortage = n_faces * _ROOM_TO_REDUCE / fine.n_faces
         if shortage > 1.0:
             spacing *= 0.97 / np.sqrt(shortage)
             continue
         mesh = reduce_faces(fine, n_faces)
-        if mesh is not None and manifold_report(mesh).is_clean and abs(mesh.n_faces - n_faces) <= 0.02 * n_faces:
+        if mesh is not None and abs(mesh.n_faces - n_faces) <= 0.02 * n_faces:
             return mesh, _labels(blueprint, part_names, mesh)
         spacing *= 0.83
     raise DegenerateMeshError(
@@ -52,9 +47,29 @@ def realise(blueprint: Blueprint, part_names: tuple[str, ...], n_faces: int) -> 
     )
 
 
+def require_one_piece(blueprint: Blueprint) -> None:
+    """Makes sure that the pieces hang together, at the resolution that `realise` starts from.
+
+    Raises
+    ------
+    DegenerateMeshError : they do not.
+    """
+    bounds = tight_bounds(blueprint.distance, blueprint.bounds())
+    _one_piece(blueprint, bounds, _spacing(bounds, blueprint.thickness))
+
+
 def part_of_piece(blueprint: Blueprint, part_names: tuple[str, ...]) -> Int[np.ndarray, " k"]:
     """Index into `part_names` of each of the blueprint's pieces, (k,) int64."""
     return np.array([part_names.index(piece.part) for piece in blueprint.pieces], dtype=np.int64)
+
+
+def _one_piece(blueprint: Blueprint, bounds: Float[np.ndarray, "2 3"], spacing: float) -> TriMesh:
+    mesh, share = largest_component(contour(blueprint.distance, grid_over(bounds, spacing)))
+    if share < 1.0 - _MAX_DEBRIS:
+        raise DegenerateMeshError(
+            f"a shape must be one piece but its largest has {share:.1%} of the area; do all pieces touch?"
+        )
+    return mesh
 
 
 def _labels(blueprint: Blueprint, part_names: tuple[str, ...], mesh: TriMesh) -> Int[np.ndarray, " m"]:

@@ -10,7 +10,6 @@ import fast_simplification
 import numpy as np
 from jaxtyping import Int
 
-from partwise.errors import DegenerateMeshError
 from partwise.geometry.adjacency import edge_components
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
@@ -21,6 +20,7 @@ from partwise.simulate.realise import part_of_piece
 _CELLS_PER_THICKNESS = 4.0
 _N_CELLS = (14, 130)  # along a piece's longest side
 _MIN_PIECE_FACES = 12
+_ROOM_TO_REDUCE = 1.2  # how many times the wanted faces are contoured
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ def realise_as_soup(
 
     Raises
     ------
-    DegenerateMeshError : no piece can be contoured.
+    DegenerateMeshError : a piece is too thin for a grid, or carved away.
     """
     soup = _assemble(blueprint, part_names, int(0.9 * n_faces), rng)
     for damage in (_tear, _open_pieces, _flip, _unweld, _duplicate, _add_fins, _add_slivers):
@@ -52,37 +52,45 @@ def realise_as_soup(
 def _assemble(blueprint: Blueprint, part_names: tuple[str, ...], n_faces: int, rng: np.random.Generator) -> _Soup:
     """Each piece contoured and reduced by itself, side by side."""
     parts = part_of_piece(blueprint, part_names)
-    fine = [(part, _contour_piece(blueprint, index)) for index, part in enumerate(parts)]
-    meshes = [(part, mesh) for part, mesh in fine if mesh is not None]
-    if not meshes:
-        raise DegenerateMeshError("a soup needs at least one piece that a grid can see; is the blueprint empty?")
+    fine = [_contour_piece(blueprint, index) for index in range(len(parts))]
     # Modellers spend faces unevenly: a leg may be finer than a seat.
-    weight = np.array([np.sqrt(face_areas(mesh).sum()) for _, mesh in meshes]) * rng.lognormal(0.0, 0.6, len(meshes))
+    weight = np.array([np.sqrt(face_areas(mesh).sum()) for mesh in fine]) * rng.lognormal(0.0, 0.6, len(fine))
     wanted = np.maximum(n_faces * weight / weight.sum(), _MIN_PIECE_FACES).astype(int)
-    vertices, faces, labels, offset = [], [], [], 0
-    for (part, mesh), n_wanted in zip(meshes, wanted, strict=True):
-        v, f = mesh.vertices, mesh.faces
-        if n_wanted < len(f):
-            v, f = fast_simplification.simplify(v.copy(), f.copy(), target_count=int(n_wanted), agg=4)[:2]
-        vertices.append(v)
-        faces.append(f.astype(np.int64) + offset)
-        labels.append(np.full(len(f), part, dtype=np.int64))
-        offset += len(v)
-    return _Soup(np.concatenate(vertices), np.concatenate(faces), np.concatenate(labels))
+    meshes = [
+        _at_count(blueprint, index, mesh, int(n)) for index, (mesh, n) in enumerate(zip(fine, wanted, strict=True))
+    ]
+    offsets = np.cumsum([0, *(mesh.n_vertices for mesh in meshes[:-1])])
+    return _Soup(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)]),
+        np.repeat(parts, [mesh.n_faces for mesh in meshes]),
+    )
 
 
-def _contour_piece(blueprint: Blueprint, index: int) -> TriMesh | None:
+def _contour_piece(blueprint: Blueprint, index: int, refinement: float = 1.0) -> TriMesh:
+    """One piece on a grid that suits its thickness, `refinement` times as fine."""
+
     def field(points: np.ndarray) -> np.ndarray:
         return blueprint.piece_distance(index, points)
 
-    try:
-        bounds = tight_bounds(field, blueprint.piece_bounds(index))
-        longest = float((bounds[1] - bounds[0]).max())
-        thickness = blueprint.pieces[index].solid.thickness
-        spacing = np.clip(thickness / _CELLS_PER_THICKNESS, longest / _N_CELLS[1], longest / _N_CELLS[0])
-        return contour(field, grid_over(bounds, float(spacing)))
-    except DegenerateMeshError:
-        return None
+    bounds = tight_bounds(field, blueprint.piece_bounds(index))
+    longest = float((bounds[1] - bounds[0]).max())
+    thickness = blueprint.pieces[index].solid.thickness
+    spacing = np.clip(thickness / _CELLS_PER_THICKNESS, longest / _N_CELLS[1], longest / _N_CELLS[0])
+    return contour(field, grid_over(bounds, float(spacing) / refinement))
+
+
+def _at_count(blueprint: Blueprint, index: int, mesh: TriMesh, n_faces: int) -> TriMesh:
+    """A piece reduced to about `n_faces` faces, contoured again where it has too few."""
+    shortage = _ROOM_TO_REDUCE * n_faces / mesh.n_faces
+    if shortage > 1.0:
+        mesh = _contour_piece(blueprint, index, refinement=1.05 * float(np.sqrt(shortage)))
+    if mesh.n_faces <= n_faces:
+        return mesh
+    vertices, faces = fast_simplification.simplify(
+        mesh.vertices.copy(), mesh.faces.copy(), target_count=n_faces, agg=4
+    )[:2]
+    return TriMesh(vertices, faces)
 
 
 def _tear(soup: _Soup, rng: np.random.Generator) -> _Soup:
@@ -146,6 +154,7 @@ def _add_slivers(soup: _Soup, rng: np.random.Generator) -> _Soup:
     on = rng.choice(len(soup.faces), len(soup.faces) // 300 + 2, replace=False)
     a, b = soup.faces[on, 0], soup.faces[on, 1]
     collapsed = rng.random(len(on)) < 0.5
+    collapsed[0] = True  # a midpoint is rarely exactly in line, so that one face at least has no area at all
     middles = len(soup.vertices) + np.arange(len(on))
     slivers = np.stack([a, b, np.where(collapsed, b, middles)], axis=1)
     halfway = (soup.vertices[a] + soup.vertices[b]) / 2.0
