@@ -1,0 +1,1 @@
+"""From polygon soup to a clean mesh that can be described, and back."""
