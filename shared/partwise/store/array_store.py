@@ -60,6 +60,10 @@ class ArrayStore(Protocol):
         """Delete a block; nothing happens if it is not there."""
         ...
 
+    def sweep_unfinished(self, older_than: timedelta) -> int:
+        """Delete what writes that were killed longer ago than this left outside every listing; returns how many."""
+        ...
+
     def put_bytes(self, key: str, data: bytes) -> None:
         """Write an object: afterwards it is there whole and durable; on error the previous state remains."""
         ...

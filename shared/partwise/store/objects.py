@@ -10,6 +10,7 @@ import shutil
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -37,6 +38,10 @@ class Objects(Protocol):
 
     def folders(self, folder: str) -> Sequence[str]:
         """Names of the folders directly in a folder, sorted."""
+        ...
+
+    def sweep_unfinished(self, before: datetime) -> int:
+        """Delete what killed writes left before a time; returns how many."""
         ...
 
 
@@ -102,6 +107,15 @@ class LocalObjects:
             return []
         return sorted(entry.name for entry in start.iterdir() if entry.is_dir() and not entry.name.startswith("."))
 
+    def sweep_unfinished(self, before: datetime) -> int:
+        folder = self.root / _PARTIAL
+        if not folder.is_dir():
+            return 0
+        old = [file for file in folder.iterdir() if file.stat().st_mtime < before.timestamp()]
+        for file in old:
+            file.unlink(missing_ok=True)
+        return len(old)
+
 
 def _sync_folder(folder: Path) -> None:
     descriptor = os.open(folder, os.O_RDONLY)
@@ -156,6 +170,9 @@ class RemoteObjects:
             return sorted(
                 entry["name"].rstrip("/").rsplit("/", 1)[-1] for entry in entries if entry["type"] == "directory"
             )
+
+    def sweep_unfinished(self, before: datetime) -> int:  # noqa: ARG002 # object stores show whole objects only
+        return 0
 
     def _path(self, key: str) -> str:
         return f"{self._root}/{key}" if key else self._root

@@ -90,6 +90,9 @@ class ZarrArrayStore:
         with self._lock:
             self._open.pop(name, None)
 
+    def sweep_unfinished(self, older_than: timedelta) -> int:
+        return self._objects.sweep_unfinished(self._clock() - older_than)
+
     # Plain objects
 
     def put_bytes(self, key: str, data: bytes) -> None:

@@ -142,6 +142,13 @@ class ArrayStoreConformance:
         assert list(store.orphans({visible}, in_the_past)) == [orphan]
         assert store.orphans({visible}, timedelta(days=1)) == []
 
+    def test_sweeping_leaves_finished_objects(self, store: ArrayStore) -> None:
+        store.put_bytes("models/1", b"x")
+        address = store.write_block(REFINEMENT, _labels(3))
+        assert store.sweep_unfinished(timedelta(days=-1)) == 0
+        assert store.exists("models/1")
+        store.verify(address)
+
     def test_bytes_come_back_and_are_replaced(self, store: ArrayStore) -> None:
         for data in (b"first", b"", b"\x00second"):
             store.put_bytes("sources/ab/cd.off", data)

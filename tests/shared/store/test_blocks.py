@@ -1,5 +1,6 @@
 """Declarations of blocks, their names, and the size of what is stored and read."""
 
+import os
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -116,3 +117,15 @@ def test_unfinished_files_are_never_listed(tmp_path: Path) -> None:
     (tmp_path / ".partial" / "left-behind").write_bytes(b"half")
     assert objects.keys("") == ["a/b"]
     assert objects.folders("") == ["a"]
+
+
+def test_old_unfinished_files_are_swept(tmp_path: Path) -> None:
+    objects = LocalObjects(tmp_path)
+    assert objects.sweep_unfinished(datetime.now(UTC)) == 0
+    objects.put("a/b", b"x")
+    for name, age_s in (("old", 10_000), ("young", 0)):
+        file = tmp_path / ".partial" / name
+        file.write_bytes(b"half")
+        os.utime(file, (file.stat().st_mtime - age_s,) * 2)
+    assert objects.sweep_unfinished(datetime.now(UTC) - timedelta(hours=1)) == 1
+    assert [file.name for file in (tmp_path / ".partial").iterdir()] == ["young"]
