@@ -259,7 +259,7 @@ class Clipped:
 
     @property
     def thickness(self) -> float:
-        return self.solid.thickness
+        return min(self.solid.thickness, self.high - self.low)
 
     def distance(self, points: Points) -> Distances:
         y = points[:, 1]

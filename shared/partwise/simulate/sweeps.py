@@ -129,11 +129,15 @@ class CurvedPanel:
 
     def distance(self, points: Points) -> Distances:
         forward = self.bend_radius - points[:, 2]
-        across = self.bend_radius * np.arctan2(points[:, 0], forward)
-        depth = np.hypot(points[:, 0], forward) - self.bend_radius
+        reach = np.hypot(points[:, 0], forward)
         rounding = min(self.rounding, self.half_depth)
-        half = np.array([self.half_width, self.half_height, self.half_depth]) - rounding
-        q = np.abs(np.stack([across, points[:, 1], depth], axis=1)) - half
+        beyond = np.abs(np.arctan2(points[:, 0], forward)) - (self._half_angle - rounding / self.bend_radius)
+        # Past the ends distances are straight, in the frame of the nearer end.
+        is_past = beyond > 0.0
+        across = np.where(is_past, reach * np.sin(beyond), self.bend_radius * beyond)
+        depth = np.abs(np.where(is_past, reach * np.cos(beyond), reach) - self.bend_radius) - self.half_depth + rounding
+        height = np.abs(points[:, 1]) - self.half_height + rounding
+        q = np.stack([across, height, depth], axis=1)
         return np.sqrt((np.maximum(q, 0.0) ** 2).sum(axis=1)) + np.minimum(q.max(axis=1), 0.0) - rounding
 
 
