@@ -11,7 +11,7 @@ from torch.nn import functional
 
 from partwise.errors import ParameterError
 from partwise.learning.dataset import GRID_SIZE
-from partwise.learning.pooling import max_pool_2x2
+from partwise.learning.stem import convolve_and_pool
 
 LEAKY_SLOPE = 0.2
 KERNEL_SIZE = 3
@@ -61,20 +61,20 @@ class Branch(nn.Module):
 
     def __init__(self, widths: tuple[int, int]) -> None:
         super().__init__()
-        self.convolutions = nn.ModuleList(
-            _uninitialised(nn.Conv2d, n_in, n_out, kernel_size=KERNEL_SIZE, padding=KERNEL_SIZE // 2)
-            for n_in, n_out in zip((1, *widths[:-1]), widths, strict=True)
-        )
+        options = {"kernel_size": KERNEL_SIZE, "padding": KERNEL_SIZE // 2}
+        self.first: nn.Conv2d = _uninitialised(nn.Conv2d, 1, widths[0], **options)
+        self.second: nn.Conv2d = _uninitialised(nn.Conv2d, *widths, **options)
 
-    # b faces, s = 16 bins a side, c channels
-    #   (b, 256) -> (b, 1, 16, 16) -> (b, c1, 16, 16) -> (b, c1, 8, 8) -> (b, c2, 8, 8) -> (b, c2, 4, 4) -> (b, 16 c2)
-    # Maps are channels-last in memory, (b, s, s, c): convolutions are quickest so, and pooling wants it.
+    # b faces, c1 and c2 channels
+    #   (b, 256) -> (b, 16, 16) -> (b, 8, 8, c1) -> (b, 8, 8, c2) -> (b, 4, 4, c2) -> (b, 16 c2)
+    # Maps are channels-last in memory, which the convolution wants; torch counts their axes as (b, c, h, w).
+    # Both the bias and LeakyReLU may come after the pooling, on a quarter of the values: a rising function of the
+    # maximum is the maximum of the function.
     def forward(self, grids: Float[Tensor, "b 256"]) -> Float[Tensor, "b n_branch_outputs"]:
-        maps = grids.view(-1, 1, GRID_SIZE, GRID_SIZE)
-        for convolution in self.convolutions:
-            convolved = convolution(maps).permute(0, 2, 3, 1).contiguous()
-            # The maximum of a rising function is the function of the maximum: pooling first is the same, on a quarter.
-            maps = functional.leaky_relu(max_pool_2x2(convolved), LEAKY_SLOPE).permute(0, 3, 1, 2)
+        grids = grids.view(-1, GRID_SIZE, GRID_SIZE)
+        pooled = convolve_and_pool(grids, self.first.weight) + self.first.bias  # type: ignore[operator] # it has one
+        maps = functional.leaky_relu(pooled, LEAKY_SLOPE).permute(0, 3, 1, 2)
+        maps = functional.leaky_relu(functional.max_pool2d(self.second(maps), 2), LEAKY_SLOPE)
         return maps.permute(0, 2, 3, 1).flatten(1)
 
 
@@ -87,7 +87,7 @@ class PartNetwork(nn.Module):
     generator : draws the initial weights; torch's global generator is not touched. None leaves them uninitialised,
         to be loaded.
 
-    Source: George et al. 2018. Differs: max-pool before the activation, which is the same function.
+    Source: George et al. 2018. Differs: max-pool before the activation and the first bias, the same function.
     """
 
     def __init__(self, spec: NetworkSpec, generator: torch.Generator | None) -> None:

@@ -23,7 +23,7 @@ from partwise.learning.network import NetworkSpec, PartNetwork
 from partwise.learning.recipe import Recipe
 from partwise.learning.schedule import learning_rate_at, snapshot_iterations
 
-N_CPU_SHARDS = 4
+N_CPU_SHARDS = 2
 REPORT_EVERY = 50
 
 
@@ -44,7 +44,7 @@ def train(
     ----------
     pool : labelled faces; classes of `spec.n_parts` parts.
     progress : called with (iterations done, mean loss since the last call) every 50 iterations and at the end.
-    n_threads : CPU threads, at most 4 are used; None takes torch's current number.
+    n_threads : CPU threads, at most 2 are used; None takes torch's current number.
     device : "cpu" or "cuda"; None takes CUDA when there is one.
 
     Raises
@@ -64,7 +64,7 @@ def train(
     gains = fit_input_gains(pool.grids, spec.branches)
     loader = GridLoader.of(pool.grids, gains, where)
     weight_seed, order_seed = np.random.SeedSequence(recipe.seed).spawn(2)
-    with _deterministic(where), _single_threaded_operations(where), ThreadPoolExecutor(n_threads) as threads:
+    with _deterministic(where), _single_threaded_operations(where), _executor(n_threads, where) as threads:
         network = PartNetwork(spec, torch.Generator().manual_seed(int(weight_seed.generate_state(1)[0]))).to(where)
         step = _GradientStep(network, loader, torch.from_numpy(pool.classes), threads)
         snapshots, history = _run(step, recipe, np.random.default_rng(order_seed), len(pool), progress)
@@ -164,6 +164,13 @@ def _deterministic(device: torch.device) -> Iterator[None]:
         yield
     finally:
         torch.use_deterministic_algorithms(before, warn_only=warn_only)
+
+
+def _executor(n_threads: int, device: torch.device) -> ThreadPoolExecutor:
+    if device.type != "cpu":
+        return ThreadPoolExecutor(1)
+    # OpenMP keeps the number of threads per thread, so each of ours has to say that it wants one.
+    return ThreadPoolExecutor(min(n_threads, N_CPU_SHARDS), initializer=torch.set_num_threads, initargs=(1,))
 
 
 @contextmanager

@@ -23,7 +23,7 @@ def _as_printed(network: PartNetwork, grids: list[torch.Tensor]) -> torch.Tensor
     described = []
     for branch, grid in zip(network.branches.values(), grids, strict=True):
         maps = grid.view(-1, 1, 16, 16)
-        for convolution in branch.convolutions:
+        for convolution in (branch.first, branch.second):
             maps = functional.max_pool2d(functional.leaky_relu(convolution(maps), 0.2), 2)
         described.append(maps.permute(0, 2, 3, 1).flatten(1))
     hidden = functional.leaky_relu(network.hidden(torch.cat(described, dim=1)), 0.2)
