@@ -28,7 +28,7 @@ class ShapeContextParameters:
     n_angle_bins: int = 16
     n_distance_bins: int = 16
     all_pairs_below: int = 5000
-    n_targets: int = 5000
+    n_targets: int = 6000
 
     def __post_init__(self) -> None:
         for name, least in (("n_angle_bins", 1), ("n_distance_bins", 1), ("all_pairs_below", 0), ("n_targets", 1)):
