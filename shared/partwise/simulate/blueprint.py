@@ -74,17 +74,23 @@ class Blueprint:
     """A shape to be contoured; y is up, +z is front.
 
     pieces : what is there. blend : width of the seams between pieces, model units. carvings : what is taken away again.
+    wall : the thinnest that carvings leave of any piece, model units.
     """
 
     pieces: tuple[Piece, ...]
     blend: float
     deformation: Deformation = Deformation()
     carvings: tuple[Solid, ...] = ()
+    wall: float = np.inf
 
     @property
     def thickness(self) -> float:
         """Narrowest width of any piece, model units."""
-        return min(piece.solid.thickness for piece in self.pieces)
+        return min(self.piece_thickness(index) for index in range(len(self.pieces)))
+
+    def piece_thickness(self, index: int) -> float:
+        """Narrowest width of one piece, model units."""
+        return min(self.pieces[index].solid.thickness, self.wall)
 
     def distance(self, points: Points) -> Distances:
         """Field of the whole shape, (n,) float64, negative inside."""

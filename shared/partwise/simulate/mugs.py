@@ -32,7 +32,9 @@ def random_mug(rng: np.random.Generator) -> Blueprint:
         lean=rng.normal(0.0, 0.03),
         ripples=random_ripples(rng, rng.uniform(0.004, 0.035)),
     )
-    return Blueprint(tuple(pieces), blend=rng.uniform(0.01, 0.07), deformation=deformation, carvings=(hollow,))
+    return Blueprint(
+        tuple(pieces), blend=rng.uniform(0.01, 0.07), deformation=deformation, carvings=(hollow,), wall=wall
+    )
 
 
 def _profile(rng: np.random.Generator, height: float) -> Outline:

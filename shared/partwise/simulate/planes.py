@@ -26,7 +26,7 @@ def _airliner(rng: np.random.Generator) -> tuple[Piece, ...]:
     """Swept wings; two or four engines under them, two or three at the tail."""
     radius = rng.uniform(0.05, 0.1)
     body = _fuselage(rng, radius, nose=rng.uniform(0.12, 0.2), blunt=0.8)
-    y = rng.uniform(-0.6, 0.0) * radius if rng.random() < 0.75 else 0.7 * radius
+    y = rng.uniform(-0.6, 0.0) * radius if rng.random() < 0.75 else 0.4 * radius
     root, z, span = rng.uniform(0.24, 0.34), rng.uniform(0.1, 0.24), rng.uniform(0.48, 0.68)
     sweep = rng.uniform(0.15, 0.36)
     wing = Wing(span, root, root * rng.uniform(0.25, 0.45), sweep, rng.uniform(0.0, 0.1), 0.045, 0.009)
@@ -83,7 +83,7 @@ def _fighter(rng: np.random.Generator) -> tuple[Piece, ...]:
     canopy = place(Ellipsoid((0.032, 0.05, 0.13)), (0.0, 0.7 * radius, rng.uniform(0.2, 0.3)))
     pieces.append(Piece(canopy, "body"))
     n_nozzles = int(rng.choice([0, 1, 2], p=[0.2, 0.3, 0.5]))
-    size = 0.62 * radius if n_nozzles == 2 else 0.85 * radius
+    size = 0.62 * radius if n_nozzles == 2 else 1.05 * radius  # clearly more than the tail it sits on
     for x in {0: (), 1: (0.0,), 2: (-size, size)}[n_nozzles]:
         pieces.append(Piece(_along_z(Frustum(0.12, 0.8 * size, size, 0.008), (x, 0.0, -0.53)), "engine"))
     has_twin_fins = rng.random() < 0.45

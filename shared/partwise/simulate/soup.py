@@ -75,8 +75,9 @@ def _contour_piece(blueprint: Blueprint, index: int, refinement: float = 1.0) ->
 
     bounds = tight_bounds(field, blueprint.piece_bounds(index))
     longest = float((bounds[1] - bounds[0]).max())
-    thickness = blueprint.pieces[index].solid.thickness
-    spacing = np.clip(thickness / _CELLS_PER_THICKNESS, longest / _N_CELLS[1], longest / _N_CELLS[0])
+    spacing = np.clip(
+        blueprint.piece_thickness(index) / _CELLS_PER_THICKNESS, longest / _N_CELLS[1], longest / _N_CELLS[0]
+    )
     return contour(field, grid_over(bounds, float(spacing) / refinement))
 
 

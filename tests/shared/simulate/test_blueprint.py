@@ -44,6 +44,11 @@ def test_a_piece_alone_is_carved_too() -> None:
     np.testing.assert_array_equal(hollow.piece_distance(0, POINTS), hollow.distance(POINTS))
 
 
+def test_thickness_is_that_of_the_thinnest_piece_or_wall() -> None:
+    pieces = (Piece(ball(0.0, 0.2), "a"), Piece(ball(0.5, 0.1), "b"))
+    assert [Blueprint(pieces, 0.0, wall=wall).thickness for wall in (np.inf, 0.05)] == [0.2, 0.05]
+
+
 def test_no_deformation_moves_nothing() -> None:
     np.testing.assert_array_equal(Deformation().to_straight(POINTS), POINTS)
 
