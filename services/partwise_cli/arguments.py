@@ -11,5 +11,3 @@ CollectionOption = Annotated[
     typer.Option("--collection", "-c", help="Which collection; needed where there are several.", show_default=False),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON, for scripts.")]
-SOME_FAILED = 1
-"""Exit code where the command is done but some shapes or files failed."""

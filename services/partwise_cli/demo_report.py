@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
+import typer
+from rich.markup import escape
 
 from partwise.workspace.assessment import ShapeAccuracy
 from partwise_cli.demo import DemoReport
@@ -24,12 +26,16 @@ def print_report(report: DemoReport) -> None:
         (1, 2, 3, 4),
     )
     times = ", ".join(f"{step} {seconds:.0f} s" for step, seconds in report.seconds.items())
-    console().print(f"[bold]Time[/bold]       {sum(report.seconds.values()):.0f} s: {times}")
-    for label, path in (
-        ("Shapes", report.shapes), ("Workspace", report.workspace), ("Labels", report.exported), ("Picture", report.picture)
-    ):  # fmt: skip
-        console().print(f"[bold]{label:<10}[/bold] {path}", soft_wrap=True)
-    console().print(f"\nLook at the queue:  partwise queue {report.workspace}", soft_wrap=True)
+    lines = {
+        "Time": f"{sum(report.seconds.values()):.0f} s: {times}",
+        "Shapes": str(report.shapes),
+        "Workspace": str(report.workspace),
+        "Labels": str(report.exported),
+        "Picture": str(report.picture),
+    }
+    for label, value in lines.items():
+        console().print(f"[bold]{label:<10}[/bold] {escape(value)}", soft_wrap=True)
+    typer.echo(f"\nLook at the queue:  partwise queue {report.workspace}")
 
 
 def report_as_json(report: DemoReport) -> dict[str, dict[str, dict[str, float]]]:

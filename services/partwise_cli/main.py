@@ -1,64 +1,54 @@
 """Entry point: the command tree, logging, and errors as one line with an exit code that means something."""
 
-import logging
 import sys
+import traceback
 from typing import Annotated
 
 import typer
 
 from partwise import __version__
-from partwise.errors import PartwiseError, StoreError
 from partwise_cli.commands import bench, collect, demo, doctor, label, model, rank, simulate
+from partwise_cli.failures import EXIT_CODES, INTERRUPTED, ending_of
+from partwise_cli.logs import configure_logging
 from partwise_cli.terminal import error_line
-
-INPUT_ERROR = 3
-STORE_ERROR = 4
-INTERRUPTED = 130
-
-EPILOG = (
-    "Exit codes: 0 done · 1 done, but some shapes or files failed · 2 wrong usage · 3 wrong input or configuration · "
-    "4 a store cannot be reached or written · 130 interrupted"
-)
 
 app = typer.Typer(
     name="partwise",
     help="From a messy collection of 3D shapes to a verified part label on every face, with little human time.",
-    epilog=EPILOG,
+    epilog=EXIT_CODES,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
-for module in (collect, label, model, rank, simulate, demo, doctor):
+for module in (collect, label, model, rank, simulate, demo, bench, doctor):
     module.register(app)
-app.add_typer(bench.app, name="bench")
 
 
 @app.callback()
 def _options(
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Log what is done, in detail.")] = False,
 ) -> None:
-    logging.basicConfig(
-        level=logging.INFO if verbose else logging.WARNING, format="%(levelname)s %(name)s: %(message)s"
-    )
+    configure_logging(verbose)
 
 
-@app.command()
+@app.command(rich_help_panel="Try it out")
 def version() -> None:
     """Which version this is.  [dim]partwise version[/dim]"""
     typer.echo(__version__)
 
 
 def main() -> None:
-    """Runs the command; an error that Partwise foresees is one line on stderr and a non-zero exit code."""
+    """Runs the command; an error that can be foreseen is one line on stderr and a non-zero exit code."""
     try:
         app(standalone_mode=True)
-    except StoreError as error:
-        error_line(str(error))
-        sys.exit(STORE_ERROR)
-    except PartwiseError as error:
-        error_line(str(error))
-        sys.exit(INPUT_ERROR)
-    except KeyboardInterrupt:
-        error_line("interrupted; what was finished is kept: run the same command again to go on")
-        sys.exit(INTERRUPTED)
+    except SystemExit as stop:  # how every command ends; typer makes this of Ctrl-C, too
+        if stop.code == INTERRUPTED:
+            error_line("interrupted; what was finished is kept: run the same command again to go on")
+        raise
+    except Exception as error:  # noqa: BLE001 - the command's edge
+        ending = ending_of(error)
+        if ending.is_fault:
+            traceback.print_exception(error)
+        error_line(ending.message)
+        sys.exit(ending.code)

@@ -17,6 +17,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 from rich.table import Table
+from rich.text import Text
 
 from partwise.workspace.progress import RunProgress
 
@@ -40,12 +41,18 @@ def error_line(message: str) -> None:
     typer.secho(f"error: {' '.join(message.split())}", fg=typer.colors.RED, err=True)
 
 
-def warning_lines(messages: Sequence[str], most: int = 20) -> None:
-    """A line each on stderr, at most so many; then how many more there were."""
+def warning_lines(messages: Sequence[str], total: int | None = None, most: int = 20) -> None:
+    """A line each on stderr, at most so many; then how many more there are, of `total` if not all are given."""
     for message in messages[:most]:
         typer.secho(f"warning: {' '.join(message.split())}", fg=typer.colors.YELLOW, err=True)
-    if len(messages) > most:
-        typer.secho(f"warning: and {len(messages) - most} more", fg=typer.colors.YELLOW, err=True)
+    n_more = (len(messages) if total is None else total) - min(len(messages), most)
+    if n_more > 0:
+        typer.secho(f"warning: and {n_more:,} more", fg=typer.colors.YELLOW, err=True)
+
+
+def counted(n: int, noun: str) -> str:
+    """`1 shape`, `2 shapes`, `1,000 shapes`."""
+    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
 
 
 def print_json(value: object) -> None:
@@ -55,11 +62,11 @@ def print_json(value: object) -> None:
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = ()) -> None:
     """A table with a title; the columns numbered in `right` are set right."""
-    table = Table(title=title, title_justify="left", title_style="bold", header_style="bold")
+    table = Table(title=Text(title), title_justify="left", title_style="bold", header_style="bold")
     for number, column in enumerate(columns):
         table.add_column(column, justify="right" if number in right else "left", overflow="fold")
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*(Text(cell) for cell in row))  # as it is: a file's name may have [brackets]
     console().print(table)
 
 

@@ -1,6 +1,7 @@
 """`partwise.toml` as one frozen tree. An unknown key, a wrong type or a value out of range is an error that names it.
 
-Only where things are and how they are computed: collections, parts and people are rows in the catalog.
+Only where things are and how they are computed: collections, parts and people are rows in the catalog. Every key is
+explained in docs/configuration.md.
 """
 
 import difflib
@@ -18,6 +19,7 @@ from partwise.segmentation.parameters import RefinementParameters
 CONFIG_FILE = "partwise.toml"
 DATABASE_VARIABLE = "PARTWISE_DATABASE_URL"
 STORE_VARIABLE = "PARTWISE_STORE_URL"
+Preset = Literal["paper"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +28,10 @@ class StoresConfig:
 
     database_url: str = "sqlite:///catalog.sqlite"
     array_url: str = "arrays"
+
+    def __post_init__(self) -> None:
+        _require(bool(self.database_url.strip()), "database_url", self.database_url, "a database URL")
+        _require(bool(self.array_url.strip()), "array_url", self.array_url, "a folder or a store URL")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +70,29 @@ class MeshConfig:
 class TrainConfig:
     """How models are trained; the defaults are those of George et al. 2018.
 
-    n_iterations : steps in all. n_snapshots : cosine cycles, one kept model each. learning_rate : at each cycle's start.
-    batch_size : faces a step. seed : of weights, batches and the inner validation split.
+    n_iterations : steps in all. n_snapshots : cosine cycles, one kept model each.
+    learning_rate : at each cycle's start. batch_size : faces a step.
+    seed : of weights, batches and the inner validation split.
     tune_smoothness : choose the cut's smoothness on held-out training shapes (3 or more labelled shapes).
+
+    The ranges are those of `partwise.learning.recipe.Recipe`, which needs more than may be loaded to read a file.
     """
 
-    preset: str = "paper"
+    preset: Preset = "paper"
     n_iterations: int = 5000
     n_snapshots: int = 5
     learning_rate: float = 0.01
     batch_size: int = 512
     seed: int = 0
     tune_smoothness: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("n_iterations", "n_snapshots", "batch_size"):
+            _require(getattr(self, name) >= 1, name, getattr(self, name), "1 or more")
+        rule = f"a multiple of n_snapshots ({self.n_snapshots})"
+        _require(self.n_iterations % self.n_snapshots == 0, "n_iterations", self.n_iterations, rule)
+        _require(0 < self.learning_rate < 1, "learning_rate", self.learning_rate, "between 0 and 1")
+        _require(self.seed >= 0, "seed", self.seed, "0 or more")
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,9 +120,13 @@ def read_config(path: Path, environment: Mapping[str, str] = os.environ) -> Conf
         raise ConfigError(
             f"a workspace needs {CONFIG_FILE} but {path} is missing; make one with `partwise init`"
         ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise ConfigError(f"{path} must be a readable file but: {error.strerror or error}; check its rights") from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{path} must be UTF-8 but byte {error.start} is not; save it as UTF-8") from error
+    except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{path} must be TOML but: {error}; correct that line") from error
-    config = _parse(Config, table, where=str(path))
+    config = _parse(Config, table, str(path), "")
     stores = replace(
         config.stores,
         database_url=environment.get(DATABASE_VARIABLE) or config.stores.database_url,
@@ -116,28 +137,39 @@ def read_config(path: Path, environment: Mapping[str, str] = os.environ) -> Conf
 
 T = TypeVar("T")
 
+_TYPE_NAMES = {int: "a whole number", float: "a number", str: "a string in quotes", bool: "true or false"}
 
-def _parse(kind: type[T], table: Mapping[str, Any], where: str) -> T:
+
+def _parse(kind: type[T], table: Mapping[str, Any], file: str, section: str) -> T:
+    """A dataclass of a TOML table; `section` is the table's dotted name, empty for the whole file."""
     hints = get_type_hints(kind)
     known = [f.name for f in fields(kind)]  # type: ignore[arg-type] # T is always a dataclass here
+    place = f"{file}: [{section}]" if section else f"{file}:"
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in known:
-            near = difflib.get_close_matches(key, known, n=1)
-            hint = f"did you mean `{near[0]}`?" if near else f"known keys are {', '.join(known)}"
-            raise ConfigError(f"{where}: unknown key `{key}`; {hint}")
-        values[key] = _value(hints[key], value, f"{where}: {key}")
+            raise ConfigError(f"{place} {_unknown(key, value, known)}")
+        inner = f"{section}.{key}" if section else key
+        if is_dataclass(hints[key]):
+            if not isinstance(value, dict):
+                raise ConfigError(f"{place} {key} must be a section but is {value!r}; write it as [{inner}]")
+            values[key] = _parse(hints[key], value, file, inner)
+        else:
+            values[key] = _value(hints[key], value, f"{place} {key}")
     try:
         return kind(**values)
     except ParameterError as error:
-        raise ConfigError(f"{where}: {error}") from error
+        raise ConfigError(f"{place} {error}") from error
+
+
+def _unknown(key: str, value: object, known: list[str]) -> str:
+    what = "section" if isinstance(value, dict) else "key"
+    near = difflib.get_close_matches(key, known, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+    return f"{what} {key} (= {value!r}) must be a known one; {hint}"
 
 
 def _value(kind: Any, value: Any, where: str) -> Any:
-    if is_dataclass(kind):
-        if not isinstance(value, dict):
-            raise ConfigError(f"{where} must be a table but is {value!r}; write it as [section]")
-        return _parse(kind, value, where)  # type: ignore[arg-type] # is_dataclass narrows to instance | type
     if get_origin(kind) is Literal:
         if value not in get_args(kind):
             raise ConfigError(f"{where} must be one of {', '.join(get_args(kind))} but is {value!r}; correct it")
@@ -145,7 +177,7 @@ def _value(kind: Any, value: Any, where: str) -> Any:
     if kind is float and type(value) is int:
         return float(value)
     if type(value) is not kind:
-        raise ConfigError(f"{where} must be of type {kind.__name__} but is {value!r}; correct it")
+        raise ConfigError(f"{where} must be {_TYPE_NAMES[kind]} but is {value!r}; correct it")
     return value
 
 

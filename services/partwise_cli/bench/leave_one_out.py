@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from partwise.errors import NotEnoughDataError
+from partwise.errors import NotEnoughDataError, NotFoundError
 from partwise.exchange.labels_psb import read_psb_labels
 from partwise.geometry.faces import face_areas
 from partwise.io.read import read_mesh
@@ -65,11 +65,19 @@ def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> i
     Raises
     ------
     NotEnoughDataError : fewer than two labelled shapes.
+    NotFoundError : there is no such folder.
     """
+    if not folder.is_dir():
+        raise NotFoundError(
+            f"leave one out needs a folder of meshes and labels but {folder} is not one; check the path"
+        )
+    names = part_names_of(folder)
+    if not names:
+        raise NotEnoughDataError(f"leave one out needs <id>{PSB_ENDING} files but {folder} has none; see --category")
     init_workspace(workspace_path)
     with open_workspace(workspace_path) as workspace:
         if not workspace.catalog.list_collections():
-            workspace.catalog.create_collection(COLLECTION, part_names_of(folder))
+            workspace.catalog.create_collection(COLLECTION, names)
         collection = workspace.catalog.get_collection(COLLECTION)
         ingest_folder(workspace, collection, folder)
         with connected():
@@ -77,7 +85,9 @@ def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> i
         import_labels(workspace, collection, folder, RevisionKind.IMPORTED, "benchmark")
         n_labelled = sum(1 for _ in labelled_shapes(workspace, collection))
     if n_labelled < 2:
-        raise NotEnoughDataError(f"leave one out needs 2 labelled shapes or more but {folder} has {n_labelled}")
+        raise NotEnoughDataError(
+            f"leave one out needs 2 labelled shapes or more but {folder} has {n_labelled}; add some"
+        )
     return n_labelled
 
 

@@ -12,14 +12,22 @@ import typer
 from partwise_cli.arguments import JsonOption
 from partwise_cli.terminal import print_json, print_table, progress, shape_progress
 
-app = typer.Typer(help="Measure on your own files.", no_args_is_help=True, rich_markup_mode="rich")
+app = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")
+
+ACCURACIES = ("accuracy_raw", "accuracy_refined", "accuracy_raw_by_area", "accuracy_refined_by_area")
+
+
+def register(parent: typer.Typer) -> None:
+    """Adds the group of commands of this module."""
+    summary = "Measure on your own files.  [dim]partwise bench describe mug.off[/dim]"
+    parent.add_typer(app, name="bench", help=summary, rich_help_panel="Try it out")
 
 
 @app.command()
 def describe(
     files: Annotated[list[Path], typer.Argument(help="Mesh files.", show_default=False)], as_json: JsonOption = False
 ) -> None:
-    """Core-seconds and memory of describing meshes.  [dim]partwise bench describe chair.off --json[/dim]"""
+    """Core-seconds and memory.  [dim]partwise bench describe chair.off --json[/dim]"""
     from partwise_cli.bench.describing import time_descriptions
 
     rows = []
@@ -49,7 +57,7 @@ def loo(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Leave one out over a labelled folder.  [dim]partwise bench loo lpsb --category Airplane --limit 4 --json[/dim]"""
+    """Leave one out.  [dim]partwise bench loo lpsb --category Airplane --limit 4[/dim]"""
     from partwise.learning.recipe import Recipe
     from partwise.workspace.workspace import open_workspace
     from partwise_cli.bench.leave_one_out import leave_one_out, prepare, summarise
@@ -71,17 +79,16 @@ def loo(
     columns = ("shape", "faces", "raw", "refined", "raw, by area", "refined, by area", "smoothness", "train s")
     rows = [
         (
-            r.shape, f"{r.n_faces:,}", f"{r.accuracy_raw:.2%}", f"{r.accuracy_refined:.2%}",
-            f"{r.accuracy_raw_by_area:.2%}", f"{r.accuracy_refined_by_area:.2%}", f"{r.smoothness:g}", f"{r.train_s:.0f}",
+            r.shape,
+            f"{r.n_faces:,}",
+            *(f"{getattr(r, name):.2%}" for name in ACCURACIES),
+            f"{r.smoothness:g}",
+            f"{r.train_s:.0f}",
         )
         for r in results
-    ]  # fmt: skip
-    rows.append(
-        (
-            "mean", "", f"{summary.accuracy_raw:.2%}", f"{summary.accuracy_refined:.2%}",
-            f"{summary.accuracy_raw_by_area:.2%}", f"{summary.accuracy_refined_by_area:.2%}", "", f"{summary.train_s:.0f}",
-        )
-    )  # fmt: skip
+    ]
+    means = (f"{getattr(summary, name):.2%}" for name in ACCURACIES)
+    rows.append(("mean", "", *means, "", f"{summary.train_s:.0f}"))
     print_table(f"Leave one out: {category}, {preset}", columns, rows, tuple(range(1, len(columns))))
 
 

@@ -3,17 +3,16 @@
 from dataclasses import asdict
 from datetime import timedelta
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from partwise.workspace.garbage import collect_garbage
-from partwise.workspace.ingest import ingest_folder
-from partwise.workspace.shapes import find_collection
-from partwise.workspace.status import CollectionStatus, collection_status
-from partwise.workspace.workspace import init_workspace, migrate_workspace, open_workspace
-from partwise_cli.arguments import SOME_FAILED, CollectionOption, JsonOption, WorkspaceArgument
-from partwise_cli.terminal import print_json, print_table, shape_progress, warning_lines
+from partwise_cli.arguments import CollectionOption, JsonOption, WorkspaceArgument
+from partwise_cli.failures import SOME_FAILED
+from partwise_cli.terminal import counted, print_json, print_table, shape_progress, warning_lines
+
+if TYPE_CHECKING:
+    from partwise.workspace.status import CollectionStatus
 
 MAX_REASONS = 20
 
@@ -29,16 +28,14 @@ def init(
     ws: WorkspaceArgument,
     collection: Annotated[str, typer.Option("--collection", "-c", help="Name of a new collection.")],
     parts: Annotated[str, typer.Option(help="Part names, comma-separated, in the order annotators see them.")],
-    up: Annotated[str, typer.Option(help="Which axis points up in pictures: x, y or z.")] = "y",
+    up: Annotated[Literal["x", "y", "z"], typer.Option(help="Which axis points up in pictures.")] = "y",
 ) -> None:
-    """Make a workspace, and a collection in it.  [dim]partwise init ws -c chairs --parts seat,back,leg,arm[/dim]"""
-    if up not in ("x", "y", "z"):
-        raise typer.BadParameter(f"must be x, y or z but is {up!r}", param_hint="--up")
-    init_workspace(ws)
+    """Make a workspace.  [dim]partwise init ws -c mugs --parts body,handle[/dim]"""
+    from partwise.workspace.workspace import init_collection
+
     names = [name.strip() for name in parts.split(",") if name.strip()]
-    with open_workspace(ws) as workspace:
-        workspace.catalog.create_collection(collection, names, {"up": up})
-    typer.echo(f"{ws}: collection {collection!r} with parts {', '.join(names)}")
+    init_collection(ws, collection, names, {"up": up})
+    typer.echo(f"{ws}: collection {collection!r} with {counted(len(names), 'part')}: {', '.join(names)}")
 
 
 def ingest(
@@ -46,20 +43,27 @@ def ingest(
     folder: Annotated[Path, typer.Argument(help="Folder of OFF, OBJ, PLY, STL or GLB files.", show_default=False)],
     collection: CollectionOption = None,
 ) -> None:
-    """Copy mesh files into a collection; again, to add new ones.  [dim]partwise ingest ws meshes/[/dim]"""
+    """Copy mesh files into a collection.  [dim]partwise ingest ws meshes/[/dim]"""
+    from partwise.workspace.ingest import ingest_folder
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         report = ingest_folder(workspace, find_collection(workspace, collection), folder)
     warning_lines([file.reason for file in report.refused])
     typer.echo(
-        f"{report.n_added} added, {report.n_unchanged} unchanged, {report.n_changed} changed, "
-        f"{len(report.refused)} refused"
+        f"{counted(report.n_added, 'shape')} added, {report.n_unchanged:,} unchanged, {report.n_changed:,} changed, "
+        f"{counted(len(report.refused), 'file')} refused"
     )
     if report.refused:
         raise typer.Exit(SOME_FAILED)
 
 
 def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
-    """Check and describe new shapes on all cores.  [dim]partwise preprocess ws[/dim]"""
+    """Check and describe new shapes.  [dim]partwise preprocess ws[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.status import collection_status
+    from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import preprocess as run
 
     with open_workspace(ws) as workspace:
@@ -67,8 +71,12 @@ def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> No
         with shape_progress("preprocess") as on_progress:
             result = run(workspace, found, on_progress)
         state = collection_status(workspace, found, MAX_REASONS)
-    _report_failures(state)
-    typer.echo(f"{result.n_done} shapes preprocessed, {result.n_failed} failed" if result.n_total else "nothing to do")
+    if result.n_failed:
+        _report_failures(state)
+    if result.n_total:
+        typer.echo(f"{counted(result.n_done, 'shape')} preprocessed, {result.n_failed:,} failed")
+    else:
+        typer.echo(_nothing_to_do(state))
     if result.n_failed:
         raise typer.Exit(SOME_FAILED)
 
@@ -78,23 +86,37 @@ def retry(
     collection: CollectionOption = None,
     stage: Annotated[str | None, typer.Option(help="Only failures of this stage.", show_default=False)] = None,
 ) -> None:
-    """Forget failures, so that the next preprocess tries again.  [dim]partwise retry ws --stage describe[/dim]"""
+    """Forget failures, to try again.  [dim]partwise retry ws --stage mesh[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         n_cleared = workspace.catalog.clear_failures(find_collection(workspace, collection).id, stage)
-    typer.echo(f"{n_cleared} failures cleared; run `partwise preprocess` to try again")
+    if n_cleared:
+        typer.echo(f"{counted(n_cleared, 'failure')} forgotten; run the command that failed again")
+    else:
+        typer.echo("no failures on record" if stage is None else f"no failures of stage {stage!r} on record")
 
 
 def status(ws: WorkspaceArgument, collection: CollectionOption = None, as_json: JsonOption = False) -> None:
-    """How far a collection is, and what failed and why.  [dim]partwise status ws[/dim]"""
+    """How far a collection is, and what failed.  [dim]partwise status ws[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.status import collection_status
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         state = collection_status(workspace, find_collection(workspace, collection), MAX_REASONS)
     if as_json:
         print_json(asdict(state))
         return
     print_table(f"Collection {state.collection}", ("state", "shapes"), [(s, f"{n:,}") for s, n in state.states], (1,))
-    rows = [(stage.stage, f"{stage.n_done:,}", f"{stage.n_failed:,}") for stage in state.stages]
-    print_table("Stages", ("stage", "done", "failed"), rows, (1, 2))
-    typer.echo(f"model: {'none yet' if state.model_version is None else f'version {state.model_version}'}")
+    if state.stages:
+        rows = [(stage.stage, f"{stage.n_done:,}", f"{stage.n_failed:,}") for stage in state.stages]
+        print_table("Stages", ("stage", "done", "failed"), rows, (1, 2))
+    else:
+        next_command = "preprocess" if sum(n for _, n in state.states) else "ingest"
+        typer.echo(f"No stage has run yet: go on with `partwise {next_command}`.")
+    typer.echo(f"Model: {'none yet' if state.model_version is None else f'version {state.model_version}'}")
     _report_failures(state)
 
 
@@ -105,19 +127,39 @@ def gc(
     ] = 24,
 ) -> None:
     """Sweep arrays that nothing needs any more.  [dim]partwise gc ws[/dim]"""
+    from partwise.workspace.garbage import collect_garbage
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         report = collect_garbage(workspace, timedelta(hours=older_than_h))
     typer.echo(
-        f"{report.n_unused_blocks} replaced blocks ({report.n_bytes / 1e6:.1f} MB) and "
-        f"{report.n_orphan_blocks} blocks of crashed runs swept"
+        f"{counted(report.n_unused_blocks, 'replaced block')} ({report.n_bytes / 1e6:.1f} MB) and "
+        f"{counted(report.n_orphan_blocks, 'block')} of crashed runs swept"
     )
 
 
 def migrate(ws: WorkspaceArgument) -> None:
     """Bring the catalog to this version's schema.  [dim]partwise migrate ws[/dim]"""
+    from partwise.workspace.workspace import migrate_workspace
+
     migrate_workspace(ws)
     typer.echo(f"{ws}: the catalog is up to date")
 
 
-def _report_failures(state: CollectionStatus) -> None:
-    warning_lines([f"{failure.source_key}: {failure.stage}: {failure.reason}" for failure in state.failures])
+def _n_failed(state: "CollectionStatus") -> int:
+    return sum(stage.n_failed for stage in state.stages)
+
+
+def _nothing_to_do(state: "CollectionStatus") -> str:
+    if not sum(n for _, n in state.states):
+        return f"nothing to do: collection {state.collection!r} has no shapes; add some with `partwise ingest`"
+    if n_failed := _n_failed(state):
+        return (
+            f"nothing to do; {counted(n_failed, 'shape')} failed before: see `partwise status`, then `partwise retry`"
+        )
+    return "nothing to do"
+
+
+def _report_failures(state: "CollectionStatus") -> None:
+    lines = [f"{failure.source_key}: {failure.stage}: {failure.reason}" for failure in state.failures]
+    warning_lines(lines, _n_failed(state), MAX_REASONS)

@@ -23,7 +23,7 @@ def demo(
     iterations: Annotated[int, typer.Option(help="Training steps; the paper's number by default.", min=5)] = 5000,
     as_json: JsonOption = False,
 ) -> None:
-    """Simulate, ingest, describe, confirm, train, refine, rank, export.  [dim]partwise demo demo/[/dim]"""
+    """Everything, once, on simulated shapes.  [dim]partwise demo demo/[/dim]"""
     from partwise_cli.demo import DemoRequest, run_demo
     from partwise_cli.demo_report import print_report, report_as_json
 

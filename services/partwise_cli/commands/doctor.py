@@ -10,11 +10,12 @@ from typing import Annotated
 import typer
 
 from partwise.errors import PartwiseError
-from partwise.workspace.workspace import open_workspace
-from partwise_cli.arguments import SOME_FAILED, JsonOption
-from partwise_cli.terminal import print_json, print_table
+from partwise_cli.arguments import JsonOption
+from partwise_cli.failures import SOME_FAILED
+from partwise_cli.terminal import counted, print_json, print_table
 
 PACKAGES = ("numpy", "torch", "ray", "numba", "embreex", "opencv-contrib-python-headless", "pyrender", "PyMaxflow")
+WORKERS = "pip install 'partwise[workers]'"
 MIN_FREE_GB = 5
 
 
@@ -39,14 +40,14 @@ def doctor(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Say what is missing on this machine and how to get it.  [dim]partwise doctor ws[/dim]"""
+    """What is missing on this machine, and a remedy.  [dim]partwise doctor[/dim]"""
     findings = [*_packages(), _renderer(), _graphics_card(), _disk(ws or Path.cwd()), _ray()]
     if ws is not None:
         findings.append(_stores(ws))
     if as_json:
         print_json([asdict(finding) for finding in findings])
     else:
-        rows = [(("ok" if f.is_fine else "missing"), f.what, f.found, f.remedy) for f in findings]
+        rows = [(("ok" if f.is_fine else "wrong"), f.what, f.found, f.remedy) for f in findings]
         print_table("This machine", ("", "what", "found", "remedy"), rows)
     if not all(finding.is_fine for finding in findings):
         raise typer.Exit(SOME_FAILED)
@@ -58,17 +59,17 @@ def _packages() -> list[Finding]:
         try:
             findings.append(Finding(package, True, version(package)))
         except PackageNotFoundError:
-            findings.append(Finding(package, False, "not installed", "pip install 'partwise[workers]'"))
+            findings.append(Finding(package, False, "not installed", WORKERS))
     return findings
 
 
 def _renderer() -> Finding:
-    from partwise.render.probe import open_depth_renderer
-
     try:
+        from partwise.render.probe import open_depth_renderer
+
         renderer = open_depth_renderer("auto")
-    except PartwiseError as error:
-        return Finding("depth views", False, str(error), "pip install 'partwise[workers]'")
+    except (PartwiseError, ImportError) as error:
+        return Finding("depth views", False, str(error), WORKERS)
     name = renderer.name
     renderer.close()
     if name == "gl":
@@ -77,9 +78,15 @@ def _renderer() -> Finding:
 
 
 def _graphics_card() -> Finding:
-    import torch
-
-    found = f"CUDA: {torch.cuda.get_device_name()}" if torch.cuda.is_available() else f"CPU, {os.cpu_count()} cores"
+    try:
+        import torch
+    except ImportError as error:
+        return Finding("training on", False, str(error), WORKERS)
+    found = (
+        f"CUDA: {torch.cuda.get_device_name()}"
+        if torch.cuda.is_available()
+        else f"CPU, {counted(os.cpu_count() or 1, 'core')}"
+    )
     return Finding("training on", True, found)
 
 
@@ -91,21 +98,26 @@ def _disk(folder: Path) -> Finding:
 
 
 def _ray() -> Finding:
-    from partwise_workers.cluster import connected, n_cores
-
     try:
+        from partwise_workers.cluster import connected, n_cores
+
         with connected():
-            return Finding("Ray", True, f"{os.environ.get('RAY_ADDRESS', 'local')}, {n_cores()} cores")
+            where = os.environ.get("RAY_ADDRESS") or "local"
+            return Finding("Ray", True, f"{where}, {counted(n_cores(), 'core')}")
+    except ImportError as error:
+        return Finding("Ray", False, str(error), WORKERS)
     except PartwiseError as error:
         return Finding("Ray", False, str(error), "start the cluster, or unset RAY_ADDRESS")
 
 
 def _stores(ws: Path) -> Finding:
+    from partwise.workspace.workspace import open_workspace
+
     try:
         with open_workspace(ws) as workspace:
             n_collections = len(workspace.catalog.list_collections())
             workspace.arrays.put_bytes("doctor/probe", b"partwise")
             workspace.arrays.delete("doctor/probe")
-        return Finding("stores", True, f"{n_collections} collections, arrays can be written")
+        return Finding("stores", True, f"{counted(n_collections, 'collection')}, arrays can be written")
     except PartwiseError as error:
         return Finding("stores", False, str(error), "see [stores] in partwise.toml")

@@ -6,13 +6,10 @@ from typing import Annotated
 import typer
 
 from partwise.store.records import RevisionKind
-from partwise.workspace.export import ExportFormat, export_labels
-from partwise.workspace.labelling import commit_labels, import_labels, read_labels
-from partwise.workspace.segmentations import Segmentation
-from partwise.workspace.shapes import find_collection, find_shape, shape_mesh
-from partwise.workspace.workspace import open_workspace
-from partwise_cli.arguments import SOME_FAILED, CollectionOption, WorkspaceArgument
-from partwise_cli.terminal import warning_lines
+from partwise.workspace.choices import ExportFormat, Segmentation
+from partwise_cli.arguments import CollectionOption, WorkspaceArgument
+from partwise_cli.failures import SOME_FAILED
+from partwise_cli.terminal import counted, warning_lines
 
 AuthorOption = Annotated[str, typer.Option(help="Whose work the labels are.")]
 
@@ -34,13 +31,18 @@ def import_(
     ] = RevisionKind.IMPORTED,
     author: AuthorOption = "import",
 ) -> None:
-    """Read labels for preprocessed shapes.  [dim]partwise import ws labels/ --as reference[/dim]"""
+    """Read labels of shapes.  [dim]partwise import ws labels/[/dim]"""
+    from partwise.workspace.labelling import import_labels
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         report = import_labels(workspace, find_collection(workspace, collection), folder, kind, author)
     warning_lines([refused.reason for refused in report.refused])
     typer.echo(
-        f"labels of {report.n_imported} shapes imported as {kind.value}, {len(report.refused)} refused, "
-        f"{report.n_unlabelled} shapes have none"
+        f"labels of {counted(report.n_imported, 'shape')} put on record as {kind.value}, "
+        f"{report.n_unchanged:,} unchanged, {counted(len(report.refused), 'file')} refused, "
+        f"{counted(report.n_unlabelled, 'shape')} without a file"
     )
     if report.refused:
         raise typer.Exit(SOME_FAILED)
@@ -53,13 +55,21 @@ def confirm(
     collection: CollectionOption = None,
     author: AuthorOption = "command line",
 ) -> None:
-    """Put a person's labels of one shape on record.  [dim]partwise confirm ws chair-0007.off chair-0007.seg[/dim]"""
+    """Put labels on record.  [dim]partwise confirm ws mug.off mug.seg[/dim]"""
+    from partwise.workspace.labelling import commit_labels, read_labels
+    from partwise.workspace.shapes import find_collection, find_shape, shape_mesh
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         found = find_collection(workspace, collection)
         target = find_shape(workspace, found, shape)
         ids = read_labels(labels, shape_mesh(workspace, target).n_faces, workspace.catalog.parts(found.id))
+        before = workspace.catalog.head_revision(target.id)
         revision = commit_labels(workspace, found, target, ids, RevisionKind.HUMAN, author)
-    typer.echo(f"{target.source_key}: revision {revision.id} by {author}")
+    if before is not None and before.id == revision.id:
+        typer.echo(f"{target.source_key}: these labels are on record already, as revision {revision.id}")
+    else:
+        typer.echo(f"{target.source_key}: revision {revision.id} by {author}")
 
 
 def export(
@@ -68,12 +78,17 @@ def export(
     segmentation: Annotated[Segmentation, typer.Option(help="Which labels.")] = Segmentation.CONFIRMED,
     file_format: Annotated[
         ExportFormat, typer.Option("--format", help="seg: part ids as text. ply: coloured mesh.")
-    ] = (ExportFormat.SEG),
+    ] = ExportFormat.SEG,
     collection: CollectionOption = None,
 ) -> None:
-    """Write labels out, with a manifest.  [dim]partwise export ws out/ --segmentation refined --format ply[/dim]"""
+    """Write labels out.  [dim]partwise export ws out/ --format ply[/dim]"""
+    from partwise.workspace.export import export_labels
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
+
     with open_workspace(ws) as workspace:
         found = find_collection(workspace, collection)
         report = export_labels(workspace, found, segmentation, file_format, out)
-    typer.echo(f"{report.n_written} shapes written, {report.n_without} have no {segmentation.value} labels")
+    without = f"; {counted(report.n_without, 'shape')} without {segmentation.value} labels" if report.n_without else ""
+    typer.echo(f"{segmentation.value} labels of {counted(report.n_written, 'shape')} written{without}")
     typer.echo(f"manifest: {report.manifest}")

@@ -2,10 +2,9 @@
 
 import typer
 
-from partwise.workspace.shapes import find_collection
-from partwise.workspace.workspace import open_workspace
-from partwise_cli.arguments import SOME_FAILED, CollectionOption, WorkspaceArgument
-from partwise_cli.terminal import progress, shape_progress
+from partwise_cli.arguments import CollectionOption, WorkspaceArgument
+from partwise_cli.failures import SOME_FAILED
+from partwise_cli.terminal import counted, progress, shape_progress
 
 
 def register(app: typer.Typer) -> None:
@@ -16,15 +15,20 @@ def register(app: typer.Typer) -> None:
 
 def train(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
     """Train a model on all labelled shapes.  [dim]partwise train ws[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
     from partwise_workers.training import train_collection
 
     with open_workspace(ws) as workspace, progress("train") as on_progress:
         model = train_collection(workspace, find_collection(workspace, collection), on_progress)
-    typer.echo(f"model version {model.version}, trained on {model.n_shapes} shapes in {model.recipe['train_s']:.0f} s")
+    shapes = counted(model.n_shapes, "shape")
+    typer.echo(f"model version {model.version}, trained on {shapes} in {model.recipe['train_s']:.0f} s")
 
 
 def evaluate(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
     """Predict and score every described shape.  [dim]partwise evaluate ws[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import evaluate as run
 
     with open_workspace(ws) as workspace, shape_progress("evaluate") as on_progress:
@@ -33,7 +37,9 @@ def evaluate(ws: WorkspaceArgument, collection: CollectionOption = None) -> None
 
 
 def refine(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
-    """Cut predictions along creases by graph cut.  [dim]partwise refine ws[/dim]"""
+    """Cut predictions along creases.  [dim]partwise refine ws[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import refine as run
 
     with open_workspace(ws) as workspace, shape_progress("refine") as on_progress:
@@ -42,6 +48,10 @@ def refine(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
 
 
 def _finish(what: str, n_done: int, n_failed: int) -> None:
-    typer.echo(f"{n_done} shapes {what}, {n_failed} failed" if n_done + n_failed else "nothing to do")
+    if n_done + n_failed:
+        typer.echo(f"{counted(n_done, 'shape')} {what}, {n_failed:,} failed")
+    else:
+        typer.echo("nothing to do")
     if n_failed:
+        typer.echo("`partwise status` says why")
         raise typer.Exit(SOME_FAILED)

@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from partwise_cli.simulated import SimulationRequest, write_collection
-from partwise_cli.terminal import progress
+from partwise_cli.terminal import counted, progress
 
 
 def register(app: typer.Typer) -> None:
@@ -22,8 +21,10 @@ def simulate(
     dirty: Annotated[bool, typer.Option("--dirty", help="Open, non-manifold soups of many components.")] = False,
     faces: Annotated[int | None, typer.Option(help="Faces of each; else 2k to 20k.", show_default=False)] = None,
 ) -> None:
-    """Make varied labelled shapes.  [dim]partwise simulate chairs --count 40 --seed 1 shapes/[/dim]"""
+    """Make labelled shapes.  [dim]partwise simulate chairs shapes/[/dim]"""
+    from partwise_cli.simulated import SimulationRequest, write_collection
+
     request = SimulationRequest(category, count, seed, dirty, faces)
     with progress("simulate") as on_progress:
         write_collection(request, out, on_progress)
-    typer.echo(f"{count} {category} in {out}, with parts {','.join(request.part_names)}")
+    typer.echo(f"{counted(count, category.removesuffix('s'))} in {out}, with parts {','.join(request.part_names)}")

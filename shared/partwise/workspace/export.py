@@ -1,35 +1,33 @@
 """Writes labels out: one file a shape, and a manifest that says what they are, with hashes."""
 
 import hashlib
+import secrets
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path, PurePosixPath
 
 import numpy as np
 from jaxtyping import Int
 
 from partwise import __version__
-from partwise.errors import NotFoundError
+from partwise.errors import ConflictError, NotFoundError, StoreError
 from partwise.exchange.export_manifest import ExportManifest, ManifestFile, ManifestPart, ManifestShape, write_manifest
 from partwise.exchange.ply_labels import LabelledMesh, write_ply_labels
 from partwise.exchange.seg import write_seg
 from partwise.labels.schema import UNLABELLED as NO_PART
 from partwise.labels.schema import PartSchema
 from partwise.store.records import Collection
-from partwise.workspace.segmentations import Segmentation, SegmentedShape, segmented_shapes
+from partwise.workspace.choices import ExportFormat as ExportFormat
+from partwise.workspace.choices import Segmentation
+from partwise.workspace.segmentations import SegmentedShape, segmented_shapes
 from partwise.workspace.shapes import load_mesh
 from partwise.workspace.workspace import Workspace
 
 MANIFEST = "manifest.json"
 UNLABELLED = -1
 """What unlabelled faces get in exported files."""
-
-
-class ExportFormat(StrEnum):
-    """seg : a text file of one part id per line, in face order. ply : the mesh with face colours and part ids."""
-
-    SEG = "seg"
-    PLY = "ply"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,40 +42,50 @@ class ExportReport:
 def export_labels(
     workspace: Workspace, collection: Collection, segmentation: Segmentation, file_format: ExportFormat, out: Path
 ) -> ExportReport:
-    """Writes `out/<source key>.<format>` for each shape that has such labels, then the manifest, last.
+    """Writes `out/<source key without suffix>.<format>` for each shape that has such labels, and the manifest, last.
 
-    Labels are part ids in the order of the file's faces, −1 where unlabelled.
+    Where two shapes differ only in their suffix, the later one's file keeps it: `a.obj.seg`. Labels are part ids in the
+    order of the file's faces, −1 where unlabelled. Nothing appears in `out` before all files are written.
 
     Raises
     ------
     NotFoundError : no shape has such labels.
+    StoreError : a store cannot be read, or the files cannot be written.
     """
     schema = workspace.catalog.parts(collection.id)
-    entries = [
-        _write(workspace, segmented, schema, file_format, out)
-        for segmented in segmented_shapes(workspace, collection, segmentation)
-    ]
-    if not entries:
-        raise NotFoundError(
-            f"export needs {segmentation} labels but no shape of {collection.name!r} has any; see `partwise status`"
+    with _staging_folder(out) as staging:
+        entries: list[ManifestShape] = []
+        taken: set[str] = set()
+        for segmented in segmented_shapes(workspace, collection, segmentation):
+            relative = _free_name(segmented.shape.source_key, file_format, taken)
+            taken.add(relative)
+            entries.append(_write(workspace, segmented, schema, file_format, staging, relative))
+        if not entries:
+            raise NotFoundError(
+                f"export needs {segmentation} labels but no shape of {collection.name!r} has any; see `partwise status`"
+            )
+        parts = tuple(ManifestPart(part.id, part.name, part.colour.lower()) for part in schema.parts)
+        manifest = ExportManifest(
+            __version__, collection.name, schema.version, parts, segmentation.value, tuple(entries)
         )
-    parts = tuple(ManifestPart(part.id, part.name, part.colour.lower()) for part in schema.parts)
-    manifest = ExportManifest(
-        __version__, collection.name, collection.schema_version, parts, segmentation.value, tuple(entries)
-    )
-    write_manifest(out / MANIFEST, manifest)
+        write_manifest(staging / MANIFEST, manifest)
+        _move([*sorted(taken), MANIFEST], staging, out)
     n_shapes = sum(workspace.catalog.state_counts(collection.id).values())
     return ExportReport(len(entries), n_shapes - len(entries), out / MANIFEST)
 
 
 def _write(
-    workspace: Workspace, segmented: SegmentedShape, schema: PartSchema, file_format: ExportFormat, out: Path
+    workspace: Workspace,
+    segmented: SegmentedShape,
+    schema: PartSchema,
+    file_format: ExportFormat,
+    folder: Path,
+    relative: str,
 ) -> ManifestShape:
     shape = segmented.shape
     labels = segmented.labels.astype(np.int64)
     labels[labels == NO_PART] = UNLABELLED
-    relative = PurePosixPath(shape.source_key).with_suffix(f".{file_format}")
-    path = out / relative
+    path = folder / relative
     if file_format is ExportFormat.SEG:
         write_seg(path, labels)
     else:
@@ -89,9 +97,50 @@ def _write(
         source_hash=shape.source_hash,
         n_faces=len(labels),
         faces_per_part=_faces_per_part(labels),
-        files=(ManifestFile(str(relative), hashlib.sha256(path.read_bytes()).hexdigest()),),
+        files=(ManifestFile(relative, hashlib.sha256(path.read_bytes()).hexdigest()),),
         model_version=segmented.model_version,
     )
+
+
+def _free_name(source_key: str, file_format: ExportFormat, taken: set[str]) -> str:
+    """Where in the export a shape's file goes: the first of two names that no other shape has."""
+    key = PurePosixPath(source_key)
+    for name in (str(key.with_suffix(f".{file_format}")), f"{key}.{file_format}"):
+        if name not in taken:
+            return name
+    raise ConflictError(f"each shape's file must have a name of its own but {key} clashes with others; rename it")
+
+
+@contextmanager
+def _staging_folder(out: Path) -> Iterator[Path]:
+    """A folder inside `out` that is gone afterwards; so is `out` if it was made for it and nothing came of it."""
+    is_new = not out.exists()
+    staging = out / f".partial-{secrets.token_hex(6)}"
+    try:
+        staging.mkdir(parents=True)
+    except OSError as error:
+        raise StoreError(
+            f"{out}: an export needs a folder to write to but: {error.strerror or error}; choose another"
+        ) from error
+    try:
+        yield staging
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+        if is_new and not any(out.iterdir()):
+            out.rmdir()
+
+
+def _move(names: list[str], staging: Path, out: Path) -> None:
+    """Renames the files into place, in order. An older manifest goes first: it does not vouch for newer files."""
+    try:
+        (out / MANIFEST).unlink(missing_ok=True)
+        for name in names:
+            (out / name).parent.mkdir(parents=True, exist_ok=True)
+            (staging / name).replace(out / name)
+    except OSError as error:
+        raise StoreError(
+            f"{error.filename}: cannot be written: {error.strerror or error}; export to an empty folder"
+        ) from error
 
 
 def _faces_per_part(labels: Int[np.ndarray, " m"]) -> dict[int, int]:

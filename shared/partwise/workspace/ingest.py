@@ -51,7 +51,7 @@ def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) ->
         raise NotFoundError(f"ingest needs a folder but {folder} is not one; check the path")
     counts = dict.fromkeys(IngestOutcome, 0)
     refused: list[RefusedFile] = []
-    for paths in _batches(mesh_files(folder)):
+    for paths in _batches(_outside(mesh_files(folder), workspace.array_url)):
         new_shapes: list[NewShape] = []
         for path in paths:
             key = path.relative_to(folder).as_posix()
@@ -62,8 +62,8 @@ def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) ->
         for ingested in workspace.catalog.add_shapes(collection.id, new_shapes):
             counts[ingested.outcome] += 1
             if ingested.outcome is IngestOutcome.CONFLICT:
-                why = "the file changed but people have labelled its shape; ingest it under another name"
-                refused.append(RefusedFile(ingested.source_key, why))
+                why = "a labelled shape's file must stay as it is but has changed; ingest it under another name"
+                refused.append(RefusedFile(ingested.source_key, f"{ingested.source_key}: {why}"))
     if not refused and not any(counts.values()):
         raise NotFoundError(f"ingest needs mesh files ({', '.join(sorted(MESH_SUFFIXES))}) but {folder} has none")
     return IngestReport(
@@ -72,10 +72,17 @@ def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) ->
 
 
 def mesh_files(folder: Path) -> Iterator[Path]:
-    """Mesh files below a folder, in order of path; links and hidden files are passed over."""
+    """Mesh files below a folder, in order of path; links, hidden files and hidden folders are passed over."""
     for path in sorted(folder.rglob("*")):
-        if path.suffix.lower() in MESH_SUFFIXES and path.is_file() and not path.is_symlink() and path.name[0] != ".":
+        is_hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
+        if path.suffix.lower() in MESH_SUFFIXES and path.is_file() and not path.is_symlink() and not is_hidden:
             yield path
+
+
+def _outside(paths: Iterator[Path], array_url: str) -> Iterator[Path]:
+    """Leaves out the array store's own copies, where the store lies in the folder that is being ingested."""
+    root = array_url.removeprefix("file://")
+    return (path for path in paths if "://" in root or not path.resolve().is_relative_to(root))
 
 
 def _batches(paths: Iterator[Path]) -> Iterator[list[Path]]:
@@ -84,6 +91,8 @@ def _batches(paths: Iterator[Path]) -> Iterator[list[Path]]:
 
 
 def _copy(workspace: Workspace, path: Path, key: str) -> NewShape:
+    if not key.isprintable():  # also what is not UTF-8, which the catalog could not hold
+        raise FileFormatError(f"{key!a}: a file's name must be printable UTF-8; rename the file")
     try:
         data = read_bytes(path)
     except FileFormatError as error:

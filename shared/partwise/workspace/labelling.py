@@ -5,16 +5,17 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 from jaxtyping import UInt16
-from safetensors.numpy import save
 
-from partwise.errors import LabelError, NotFoundError, PartwiseError
+from partwise.errors import ConflictError, LabelError, NotFoundError, PartwiseError, StoreError
 from partwise.exchange.labels_psb import read_psb_labels
 from partwise.exchange.named_labels import UNLABELLED as NO_LABEL
 from partwise.exchange.named_labels import to_part_ids
 from partwise.exchange.seg import read_seg
 from partwise.labels.schema import UNLABELLED, PartSchema
+from partwise.store import meshes
+from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, LabelRevision, Mesh, NewRevision, RevisionKind, Shape
-from partwise.workspace.shapes import all_shapes, load_mesh, shape_mesh
+from partwise.workspace.shapes import all_shapes, shape_mesh
 from partwise.workspace.workspace import Workspace
 
 PSB_ENDING = "_labels.txt"
@@ -31,9 +32,10 @@ class RefusedLabels:
 
 @dataclass(frozen=True, slots=True)
 class ImportReport:
-    """What became of a folder's label files; `n_unlabelled` shapes had none."""
+    """What became of a folder's label files. `n_unchanged` were on record already; `n_unlabelled` shapes had none."""
 
     n_imported: int
+    n_unchanged: int
     n_unlabelled: int
     refused: tuple[RefusedLabels, ...]
 
@@ -43,11 +45,18 @@ def import_labels(
 ) -> ImportReport:
     """For each shape `a/b.off` reads `a/b_labels.txt` or `a/b.seg` below the folder. A wrong file costs only itself.
 
-    A `.seg` file holds part ids of the collection's schema, 0 for unlabelled.
-    Shapes whose newest labels of this kind are the same are left as they are.
+    A `.seg` file holds part ids of the collection's schema, 0 or −1 for unlabelled. Shapes whose newest labels of this
+    kind are the same are left as they are; labels that a person confirmed are never hidden behind imported ones.
+
+    Raises
+    ------
+    NotFoundError : there is no such folder, or no label file of any shape in it.
+    StoreError : a store cannot be reached or written.
     """
+    if not folder.is_dir():
+        raise NotFoundError(f"labels are read from a folder but {folder} is not one; check the path")
     schema = workspace.catalog.parts(collection.id)
-    n_imported = n_unlabelled = 0
+    n_imported = n_unchanged = n_unlabelled = 0
     refused: list[RefusedLabels] = []
     for shape in all_shapes(workspace.catalog, collection.id):
         path = _label_file(folder, shape.source_key)
@@ -55,13 +64,18 @@ def import_labels(
             n_unlabelled += 1
             continue
         try:
-            mesh = shape_mesh(workspace, shape)
-            labels = read_labels(path, mesh.n_faces, schema)
-            commit_labels(workspace, collection, shape, labels, kind, author)
-            n_imported += 1
+            is_new = _import(workspace, collection, shape, path, schema, kind, author)
+            n_imported, n_unchanged = n_imported + is_new, n_unchanged + (not is_new)
+        except StoreError:
+            raise
         except PartwiseError as error:
-            refused.append(RefusedLabels(str(path), str(error)))
-    return ImportReport(n_imported, n_unlabelled, tuple(refused))
+            refused.append(RefusedLabels(str(path), _naming(path, error)))
+    if n_imported + n_unchanged + len(refused) == 0:
+        raise NotFoundError(
+            f"{folder} must hold <shape>{PSB_ENDING} or <shape>{SEG_ENDING} files but has none for the "
+            f"{n_unlabelled} shapes of {collection.name!r}; are names and subfolders those of the meshes?"
+        )
+    return ImportReport(n_imported, n_unchanged, n_unlabelled, tuple(refused))
 
 
 def read_labels(path: Path, n_faces: int, schema: PartSchema) -> UInt16[np.ndarray, " m"]:
@@ -92,21 +106,21 @@ def commit_labels(
     kind: RevisionKind,
     author: str,
 ) -> LabelRevision:
-    """Keeps the mesh's bytes, then commits an immutable revision on it. Equal to the newest of its kind: returns that.
+    """Keeps the mesh's bytes, then commits an immutable revision on it; what is on record already is returned instead.
 
     Raises
     ------
     LabelError : one label per face is missing, or a label is not in the schema.
     ConflictError : the shape has no mesh yet.
     """
-    catalog = workspace.catalog
     mesh = shape_mesh(workspace, shape)
-    head = catalog.head_revision(shape.id, (kind,))
-    if head is not None and head.mesh_hash == mesh.mesh_hash and np.array_equal(catalog.labels(head.id), labels):
-        return head
+    same = _same_labels(workspace, shape, mesh, labels, kind)
+    if same is not None:
+        return same
     if kind is not RevisionKind.REFERENCE:
         keep_mesh(workspace, mesh)
-    return catalog.add_revision(
+    parent = workspace.catalog.head_revision(shape.id, SHOWN_KINDS if kind in SHOWN_KINDS else (kind,))
+    return workspace.catalog.add_revision(
         NewRevision(
             shape_id=shape.id,
             mesh_hash=mesh.mesh_hash,
@@ -114,20 +128,14 @@ def commit_labels(
             author_id=person_id(workspace, author),
             schema_version=collection.schema_version,
             labels=labels,
-            parent_id=head.id if head else None,
+            parent_id=parent.id if parent else None,
         )
     )
 
 
 def keep_mesh(workspace: Workspace, mesh: Mesh) -> None:
     """Keeps the bytes of a mesh under its content hash, never swept: labels on it are worth nothing without them."""
-    if mesh.kept_key is not None:
-        return
-    key = f"kept/meshes/{mesh.mesh_hash}.safetensors"
-    stored = load_mesh(workspace, mesh)
-    arrays = {"vertices": stored.vertices.astype(np.float32), "faces": stored.faces.astype(np.uint32)}
-    workspace.arrays.put_bytes(key, save(arrays))
-    workspace.catalog.keep_mesh(mesh.mesh_hash, key)
+    meshes.keep_mesh(workspace.catalog, workspace.arrays, mesh)
 
 
 def person_id(workspace: Workspace, name: str) -> int:
@@ -138,7 +146,45 @@ def person_id(workspace: Workspace, name: str) -> int:
         return workspace.catalog.add_person(name).id
 
 
+def _import(
+    workspace: Workspace,
+    collection: Collection,
+    shape: Shape,
+    path: Path,
+    schema: PartSchema,
+    kind: RevisionKind,
+    author: str,
+) -> bool:
+    """Commits one file's labels; whether they are new."""
+    mesh = shape_mesh(workspace, shape)
+    labels = read_labels(path, mesh.n_faces, schema)
+    if _same_labels(workspace, shape, mesh, labels, kind) is not None:
+        return False
+    shown = workspace.catalog.head_revision(shape.id)
+    if kind is RevisionKind.IMPORTED and shown is not None and shown.kind is RevisionKind.HUMAN:
+        raise ConflictError(
+            f"imported labels must not hide a person's but {shape.source_key} has labels that a person confirmed; "
+            "take the file away, or put it on record with `partwise confirm`"
+        )
+    commit_labels(workspace, collection, shape, labels, kind, author)
+    return True
+
+
+def _same_labels(
+    workspace: Workspace, shape: Shape, mesh: Mesh, labels: UInt16[np.ndarray, " m"], kind: RevisionKind
+) -> LabelRevision | None:
+    """The newest revision of this kind if it says the same about the same mesh; a person's only if it is shown."""
+    head = workspace.catalog.head_revision(shape.id, SHOWN_KINDS if kind is RevisionKind.HUMAN else (kind,))
+    if head is None or head.kind is not kind or head.mesh_hash != mesh.mesh_hash:
+        return None
+    return head if np.array_equal(workspace.catalog.labels(head.id), labels) else None
+
+
 def _label_file(folder: Path, source_key: str) -> Path | None:
     stem = PurePosixPath(source_key).with_suffix("")
-    candidates = (folder / f"{stem}{ending}" for ending in (PSB_ENDING, SEG_ENDING))
+    candidates = (folder / f"{name}{ending}" for name in (source_key, stem) for ending in (PSB_ENDING, SEG_ENDING))
     return next((path for path in candidates if path.is_file()), None)
+
+
+def _naming(path: Path, error: PartwiseError) -> str:
+    return str(error) if str(path) in str(error) else f"{path}: {error}"

@@ -31,10 +31,13 @@ def ranked_queue(
     limit: int,
     states: Sequence[ShapeState] | None = None,
 ) -> list[QueuedShape]:
-    """Shapes by falling score. Before any model exists: the first shapes, in the order they were selected."""
+    """Shapes of the given states by falling score.
+
+    Before any model exists: the first shapes, in the order they were selected.
+    """
     rows = workspace.catalog.queue(collection.id, score_name, limit=limit, states=states)
     if not rows and workspace.catalog.latest_model(collection.id) is None:
-        return _selection_order(workspace, collection, limit)
+        return _selection_order(workspace, collection, limit, states)
     names = {part.id: part.name for part in workspace.catalog.parts(collection.id).parts}
     runs = workspace.catalog.stage_runs([row.shape.id for row in rows], EVALUATE)
     return [
@@ -58,12 +61,15 @@ def all_ranked(workspace: Workspace, collection: Collection, score_name: str) ->
         anchor = page[-1].anchor
 
 
-def _selection_order(workspace: Workspace, collection: Collection, limit: int) -> list[QueuedShape]:
-    ids = [first.shape_id for first in workspace.catalog.first_shapes(collection.id)[:limit]]
-    shapes, states = workspace.catalog.shapes_by_id(ids), workspace.catalog.shape_states(ids)
+def _selection_order(
+    workspace: Workspace, collection: Collection, limit: int, states: Sequence[ShapeState] | None
+) -> list[QueuedShape]:
+    ids = [first.shape_id for first in workspace.catalog.first_shapes(collection.id)]
+    shapes, state_of = workspace.catalog.shapes_by_id(ids), workspace.catalog.shape_states(ids)
+    wanted = [shape_id for shape_id in ids if states is None or state_of[shape_id] in states]
     return [
-        QueuedShape(rank, shapes[shape_id], states[shape_id], None, None, ())
-        for rank, shape_id in enumerate(ids, start=1)
+        QueuedShape(rank, shapes[shape_id], state_of[shape_id], None, None, ())
+        for rank, shape_id in enumerate(wanted[:limit], start=1)
     ]
 
 

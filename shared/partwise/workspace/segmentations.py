@@ -2,26 +2,18 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from jaxtyping import UInt16
 
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, Mesh, RevisionKind, Shape
+from partwise.workspace.choices import Segmentation as Segmentation
 from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
 MESH, DESCRIBE, EVALUATE, REFINE = "mesh", "describe", "evaluate", "refine"
 """Names of the stages on record."""
-
-
-class Segmentation(StrEnum):
-    """Which labels of a shape are meant."""
-
-    CONFIRMED = "confirmed"
-    REFINED = "refined"
-    PREDICTED = "predicted"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +52,8 @@ def segment(workspace: Workspace, shapes: Sequence[Shape], segmentation: Segment
     for shape in shapes:
         run, mesh = runs.get(shape.id), meshes.get(shape.id)
         if run is None or mesh is None or run.block_name is None or run.row is None:
+            continue
+        if run.summary.get("mesh_hash", mesh.mesh_hash) != mesh.mesh_hash:  # predicted before the shape got this mesh
             continue
         labels = _labels_of_run(workspace, run.block_name, run.row, segmentation)
         if len(labels) == mesh.n_faces:

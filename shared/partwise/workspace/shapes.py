@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from partwise.errors import ConflictError, NotFoundError
 from partwise.mesh import TriMesh
+from partwise.store import meshes
 from partwise.store.catalog import ShapeCatalog
 from partwise.store.records import Collection, Mesh, Shape, ShapeState
 from partwise.workspace.workspace import Workspace
@@ -32,14 +33,16 @@ def find_collection(workspace: Workspace, name: str | None) -> Collection:
 
     Raises
     ------
-    NotFoundError : no such collection, or several and none was named.
+    NotFoundError : no such collection, none at all, or several and none was named.
     """
     if name is not None:
         return workspace.catalog.get_collection(name)
     collections = workspace.catalog.list_collections()
-    if len(collections) != 1:
-        names = ", ".join(c.name for c in collections) or "none"
-        raise NotFoundError(f"--collection must be given as the workspace has {len(collections)}: {names}")
+    if not collections:
+        raise NotFoundError(f"{workspace.path} must have a collection but has none; make one with `partwise init`")
+    if len(collections) > 1:
+        names = ", ".join(collection.name for collection in collections)
+        raise NotFoundError(f"a collection must be named as {workspace.path} has {names}; add --collection")
     return collections[0]
 
 
@@ -65,15 +68,20 @@ def shape_mesh(workspace: Workspace, shape: Shape) -> Mesh:
     ------
     ConflictError : it has none: it was not preprocessed, or failed.
     """
-    meshes = workspace.catalog.meshes([shape.id])
-    if shape.id not in meshes:
-        raise ConflictError(f"{shape.source_key} has no mesh yet; run `partwise preprocess`, then `partwise status`")
-    return meshes[shape.id]
+    found = workspace.catalog.meshes([shape.id])
+    if shape.id not in found:
+        raise ConflictError(
+            f"{shape.source_key} must have a mesh but has none yet; run `partwise preprocess`, then `partwise status`"
+        )
+    return found[shape.id]
 
 
 def load_mesh(workspace: Workspace, mesh: Mesh) -> TriMesh:
-    """The mesh's vertices and faces, from its block."""
-    if mesh.block_name is None or mesh.row is None:
-        raise ConflictError(f"mesh {mesh.mesh_hash[:12]} is in no block; run `partwise preprocess` again")
-    arrays = workspace.arrays.read_many(mesh.block_name, mesh.row, ("vertices", "faces"))
-    return TriMesh(arrays["vertices"], arrays["faces"])
+    """The mesh's vertices and faces, checked against its hash.
+
+    Raises
+    ------
+    NotFoundError : it is stored nowhere any more.
+    StoreError : the store cannot be read, or holds another mesh.
+    """
+    return meshes.read_mesh(workspace.arrays, mesh)

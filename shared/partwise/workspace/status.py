@@ -3,7 +3,10 @@
 from dataclasses import dataclass
 
 from partwise.store.records import Collection
+from partwise.workspace.segmentations import DESCRIBE, EVALUATE, MESH, REFINE
 from partwise.workspace.workspace import Workspace
+
+STAGE_ORDER = (MESH, DESCRIBE, EVALUATE, REFINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +29,7 @@ class FailedShape:
 
 @dataclass(frozen=True, slots=True)
 class CollectionStatus:
-    """states : (state, shapes). failures : the first few."""
+    """states : (state, shapes). stages : in the order in which they run. failures : the first few."""
 
     collection: str
     states: tuple[tuple[str, int], ...]
@@ -42,10 +45,17 @@ def collection_status(workspace: Workspace, collection: Collection, max_failures
     return CollectionStatus(
         collection.name,
         tuple((state.value, n) for state, n in catalog.state_counts(collection.id).items()),
-        tuple(StageStatus(count.stage, count.n_done, count.n_failed) for count in catalog.stage_counts(collection.id)),
+        tuple(
+            StageStatus(count.stage, count.n_done, count.n_failed)
+            for count in sorted(catalog.stage_counts(collection.id), key=lambda count: _position(count.stage))
+        ),
         model.version if model else None,
         tuple(
             FailedShape(failure.source_key, failure.run.stage, failure.run.reason or "no reason on record")
             for failure in catalog.failures(collection.id, limit=max_failures)
         ),
     )
+
+
+def _position(stage: str) -> int:
+    return STAGE_ORDER.index(stage) if stage in STAGE_ORDER else len(STAGE_ORDER)

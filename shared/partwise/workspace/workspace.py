@@ -1,16 +1,19 @@
 """Making and opening a workspace."""
 
-from collections.abc import Iterator
+import os
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from partwise.config import CONFIG_FILE, Config, read_config
-from partwise.errors import ConfigError
+from partwise.config import CONFIG_FILE, DATABASE_VARIABLE, STORE_VARIABLE, Config, read_config
+from partwise.errors import ConfigError, LabelError, StoreError
 from partwise.io.atomic import write_atomically
 from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import Catalog
 from partwise.store.open import create_catalog, open_array_store, open_catalog
+from partwise.store.records import Collection
 
 INITIAL_CONFIG = """\
 # Where things are and how they are computed. Every key is explained in docs/configuration.md; what is left out has its
@@ -38,18 +41,26 @@ def init_workspace(path: Path) -> None:
 
     Raises
     ------
-    ConfigError : the path is a file, or a folder that holds other things.
+    ConfigError : the path is a file, or a folder that holds other things; or a store's URL is wrong.
+    StoreError : a store cannot be reached or written. Then a new workspace is not left behind half-made.
     """
-    if path.exists() and not path.is_dir():
-        raise ConfigError(f"a workspace is a folder but {path} is a file; choose another path")
-    config_path = path / CONFIG_FILE
-    if not config_path.exists():
-        if path.is_dir() and any(path.iterdir()):
-            raise ConfigError(
-                f"a new workspace needs an empty folder but {path} holds other files; choose another path"
-            )
-        write_atomically(config_path, INITIAL_CONFIG.encode())
-    create_catalog(_database_url(path, read_config(config_path))).close()
+    with _made_whole(path):
+        pass
+
+
+def init_collection(path: Path, name: str, part_names: Sequence[str], settings: Mapping[str, Any]) -> Collection:
+    """As `init_workspace`, with a new collection in it: both or neither.
+
+    Raises
+    ------
+    ConflictError : the workspace has a collection of this name.
+    LabelError : no part, or a part name that is empty, too long or given twice.
+    ParameterError : the collection's name is empty or has spaces around it.
+    """
+    if not part_names:
+        raise LabelError(f"a collection needs at least one part but {name!r} has none; name them in order")
+    with _made_whole(path) as catalog:
+        return catalog.create_collection(name, part_names, settings)
 
 
 @contextmanager
@@ -63,16 +74,74 @@ def open_workspace(path: Path) -> Iterator[Workspace]:
     """
     config = read_config(path / CONFIG_FILE)
     array_url = _array_url(path, config)
-    catalog = open_catalog(_database_url(path, config))
+    with _naming_the_key(path, "database_url", DATABASE_VARIABLE):
+        catalog = open_catalog(_database_url(path, config))
     try:
-        yield Workspace(path, config, catalog, open_array_store(array_url), array_url)
+        with _naming_the_key(path, "array_url", STORE_VARIABLE):
+            arrays = open_array_store(array_url)
+        yield Workspace(path, config, catalog, arrays, array_url)
     finally:
         catalog.close()
 
 
 def migrate_workspace(path: Path) -> None:
-    """Brings the catalog to the schema of this version of Partwise."""
-    create_catalog(_database_url(path, read_config(path / CONFIG_FILE))).close()
+    """Brings the catalog to the schema of this version of Partwise.
+
+    Raises
+    ------
+    ConfigError : not a workspace, or `partwise.toml` is wrong.
+    NotFoundError : the catalog is gone; an empty one in its place would hide that.
+    StoreError : it cannot be reached or written, or a newer Partwise made it.
+    """
+    url = _database_url(path, read_config(path / CONFIG_FILE))
+    with _naming_the_key(path, "database_url", DATABASE_VARIABLE):
+        try:
+            open_catalog(url).close()
+        except StoreError:  # an older schema; any other trouble comes up again
+            create_catalog(url).close()
+
+
+@contextmanager
+def _made_whole(path: Path) -> Iterator[Catalog]:
+    """The catalog of a workspace, which is made if it is not there and unmade if the block fails."""
+    if path.exists() and not path.is_dir():
+        raise ConfigError(f"a workspace is a folder but {path} is a file; choose another path")
+    was_there, is_new = path.exists(), not (path / CONFIG_FILE).exists()
+    if is_new and was_there and any(path.iterdir()):
+        raise ConfigError(f"a new workspace needs an empty folder but {path} holds other files; choose another path")
+    try:
+        if is_new:
+            write_atomically(path / CONFIG_FILE, INITIAL_CONFIG.encode())
+        config = read_config(path / CONFIG_FILE)
+        with _naming_the_key(path, "array_url", STORE_VARIABLE):
+            open_array_store(_array_url(path, config))
+        with _naming_the_key(path, "database_url", DATABASE_VARIABLE):
+            catalog = create_catalog(_database_url(path, config))
+        with catalog:
+            yield catalog
+    except BaseException:
+        if is_new:
+            _unmake(path, keep_folder=was_there)
+        raise
+
+
+def _unmake(path: Path, keep_folder: bool) -> None:
+    """Takes away what a failed `init` put into an empty folder; anything else in there stays, and its folder."""
+    for name in (CONFIG_FILE, *(f"catalog.sqlite{ending}" for ending in ("", "-wal", "-shm", "-journal"))):
+        (path / name).unlink(missing_ok=True)
+    for folder in (path / "arrays", *(() if keep_folder else (path,))):
+        if folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()
+
+
+@contextmanager
+def _naming_the_key(path: Path, key: str, variable: str) -> Iterator[None]:
+    """Says of a wrong URL where it was written."""
+    try:
+        yield
+    except ConfigError as error:
+        where = f"environment variable {variable}" if os.environ.get(variable) else f"{path / CONFIG_FILE}"
+        raise ConfigError(f"{where}: [stores] {key}: {error}") from error
 
 
 def _database_url(path: Path, config: Config) -> str:

@@ -1,0 +1,36 @@
+"""Log records as lines on stderr, with the fields that a record carries beside its message."""
+
+import logging
+from typing import Any
+
+import typer
+
+_USUAL = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "taskName"}
+
+
+class StderrHandler(logging.Handler):
+    """Writes to today's stderr, which tests and progress bars replace."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        typer.echo(self.format(record), err=True)
+
+
+class FieldFormatter(logging.Formatter):
+    """`warning: attempt failed (shape=a.off, attempt=1)`."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        fields: dict[str, Any] = {key: value for key, value in vars(record).items() if key not in _USUAL}
+        shown = f" ({', '.join(f'{key}={value}' for key, value in fields.items())})" if fields else ""
+        return f"{record.levelname.lower()}: {record.getMessage()}{shown}"
+
+
+def configure_logging(verbose: bool) -> None:
+    """Warnings of everything on stderr; with `verbose` also what Partwise says of its own doing."""
+    root = logging.getLogger()
+    if not any(isinstance(handler, StderrHandler) for handler in root.handlers):
+        handler = StderrHandler()
+        handler.setFormatter(FieldFormatter())
+        root.addHandler(handler)
+    root.setLevel(logging.WARNING)
+    for package in ("partwise", "partwise_workers", "partwise_cli"):
+        logging.getLogger(package).setLevel(logging.INFO if verbose else logging.WARNING)
