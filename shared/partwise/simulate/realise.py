@@ -4,11 +4,11 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from partwise.errors import DegenerateMeshError
+from partwise.geometry.contouring import grid_over
 from partwise.mesh import TriMesh
 from partwise.simulate.blueprint import Blueprint
 from partwise.simulate.contour import (
     contour,
-    grid_over,
     label_by_nearest,
     largest_component,
     reduce_faces,

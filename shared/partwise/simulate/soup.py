@@ -11,10 +11,11 @@ import numpy as np
 from jaxtyping import Int
 
 from partwise.geometry.adjacency import edge_components
+from partwise.geometry.contouring import grid_over
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
 from partwise.simulate.blueprint import Blueprint
-from partwise.simulate.contour import contour, grid_over, tight_bounds
+from partwise.simulate.contour import contour, tight_bounds
 from partwise.simulate.realise import part_of_piece
 
 _CELLS_PER_THICKNESS = 4.0
