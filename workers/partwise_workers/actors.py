@@ -4,86 +4,29 @@ import json
 import logging
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+import uuid
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import ray
 
-from partwise.errors import NotFoundError, PartwiseError
+from partwise.errors import NotFoundError, PartwiseError, StoreError
 from partwise.store.array_store import ArrayStore, BlockAddress
 from partwise.store.blocks import BlockKind
 from partwise.store.open import open_array_store
-from partwise.store.records import StageRun
-from partwise_workers.stage import ShapeInputs, Stage, StageResult
+from partwise.store.ragged import ragged_quantities
+from partwise_workers.stage import RunStage, Stage, StageResult
+from partwise_workers.tasks import ShapeOutcome, ShapeTask, StagedName, StagedResult, StageFailure
 
 logger = logging.getLogger(__name__)
 
 ACCOUNT = "_account"
 """Beside a staged result's arrays: its summary and seconds as JSON, for a run that finds it after a crash."""
 
-
-@dataclass(frozen=True, slots=True)
-class BlockRow:
-    """Where a finished stage's arrays of one shape are: a published block and the shape's row in it."""
-
-    block_name: str
-    row: int
-
-
-def block_row(run: StageRun | None) -> BlockRow | None:
-    """Where a stage run's arrays are; None without a run or without arrays."""
-    if run is None or run.block_name is None or run.row is None:
-        return None
-    return BlockRow(run.block_name, run.row)
-
-
-@dataclass(frozen=True, slots=True)
-class ShapeTask:
-    """Ids only. Stages to run on one shape, in order, each with its key; and where earlier stages' arrays are."""
-
-    shape_id: int
-    source_key: str
-    source_object: str
-    stage_keys: tuple[tuple[str, str], ...]
-    finished: Mapping[str, BlockRow]
-
-
-@dataclass(frozen=True, slots=True)
-class StagedResult:
-    """One stage's result of one shape, waiting in the staging area to be packed."""
-
-    stage: str
-    key: str
-    staged_as: str
-    seconds: float
-    summary: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class StageFailure:
-    """Why a stage gave up on a shape: one line for people, and the traceback where the cause was unforeseen."""
-
-    stage: str
-    key: str
-    reason: str
-    seconds: float
-    detail: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class ShapeOutcome:
-    """What an actor did with one task; stages after a failure did not run."""
-
-    shape_id: int
-    results: tuple[StagedResult, ...]
-    failure: StageFailure | None = None
-
-
-def staged_name(stage: str, shape_id: int, key: str) -> str:
-    """The staging name of one result. It holds the key, so that a restarted run finds what an earlier one had made."""
-    return f"{stage}/{shape_id}-{key}"
+MAX_REASON = 500
+"""Characters of an unforeseen error that are kept as the reason; the traceback has the rest."""
 
 
 class _TaskInputs:
@@ -108,55 +51,130 @@ class _TaskInputs:
 
 
 class _StageWorker:
-    """Runs stages on one shape at a time. What a stage opens (renderer, model) lives as long as the actor."""
+    """Runs stages on one shape at a time. `start` comes first; what it opens lives as long as the actor.
+
+    What a stage raises is the shape's fault and comes back as its failure. What `start` raises, and a store that
+    refuses or cannot be reached, is not, and goes to the driver as an exception, which ends the run.
+    """
 
     def __init__(self, array_url: str, stages: Sequence[Stage]) -> None:
-        self._arrays = open_array_store(array_url)
+        self._array_url = array_url
         self._stages = {stage.name: stage for stage in stages}
-        self._opened: dict[str, Callable[[ShapeInputs], StageResult]] = {}
+        self._opened: dict[str, RunStage] = {}
+        self._stack = ExitStack()
+
+    def start(self) -> None:
+        """Opens the store and the stages."""
+        self._arrays: ArrayStore = open_array_store(self._array_url)
+        for name, stage in self._stages.items():
+            self._opened[name] = self._stack.enter_context(stage.open(self._arrays))
+
+    def close(self) -> None:
+        """Closes what `start` opened."""
+        self._stack.close()
 
     def run(self, task: ShapeTask) -> ShapeOutcome:
+        """Runs the task's stages, one after the other, until one fails."""
         inputs = _TaskInputs(self._arrays, task)
         results: list[StagedResult] = []
         for stage, key in task.stage_keys:
-            started = time.perf_counter()
-            try:
-                results.append(self._run_stage(stage, key, task, inputs, started))
-            except PartwiseError as error:
-                failure = StageFailure(stage, key, str(error), time.perf_counter() - started)
-                return ShapeOutcome(task.shape_id, tuple(results), failure)
-            except Exception as error:  # noqa: BLE001 - the task's edge: one bad mesh never costs the run
-                reason = f"{type(error).__name__}: {error}".splitlines()[0]
-                failure = StageFailure(stage, key, reason, time.perf_counter() - started, traceback.format_exc())
-                return ShapeOutcome(task.shape_id, tuple(results), failure)
+            name = str(StagedName(stage, task.shape_id, key))
+            made = self._staged(name)
+            if made is None:
+                started = time.perf_counter()
+                try:
+                    made = self._make(stage, inputs, started)
+                except Exception as error:  # noqa: BLE001 - the task's edge: one bad mesh never costs the run
+                    if isinstance(error, StoreError):
+                        self._require_store()
+                    failure = _failure(stage, key, error, time.perf_counter() - started)
+                    return ShapeOutcome(task.shape_id, tuple(results), failure)
+                self._arrays.stage(name, made)
+            inputs.add(stage, made)
+            results.append(_staged_result(stage, key, name, made))
         return ShapeOutcome(task.shape_id, tuple(results))
 
-    def _run_stage(self, stage: str, key: str, task: ShapeTask, inputs: _TaskInputs, started: float) -> StagedResult:
-        name = staged_name(stage, task.shape_id, key)
+    def give_up(self, task: ShapeTask, reason: str) -> ShapeOutcome:
+        """What earlier attempts, which died, had finished; the stage after that is the one that fails."""
+        results: list[StagedResult] = []
+        for stage, key in task.stage_keys:
+            name = str(StagedName(stage, task.shape_id, key))
+            made = self._staged(name)
+            if made is None:
+                return ShapeOutcome(task.shape_id, tuple(results), StageFailure(stage, key, reason, 0.0))
+            results.append(_staged_result(stage, key, name, made))
+        return ShapeOutcome(task.shape_id, tuple(results))
+
+    def _staged(self, name: str) -> Mapping[str, np.ndarray] | None:
+        """A result that an earlier attempt or run left; None if there is none, or a damaged one to be made again."""
         try:
-            made = self._arrays.read_staged(name)
-        except NotFoundError:
-            if stage not in self._opened:
-                self._opened[stage] = self._stages[stage].open(self._arrays)
-            result = self._opened[stage](inputs)
-            note = json.dumps({"summary": result.summary, "seconds": time.perf_counter() - started})
-            made = {**result.arrays, ACCOUNT: np.frombuffer(note.encode(), dtype=np.uint8)}
-            self._arrays.stage(name, made)
-        inputs.add(stage, made)
-        account = json.loads(made[ACCOUNT].tobytes())
-        return StagedResult(stage, key, name, account["seconds"], account["summary"])
+            return self._arrays.read_staged(name)
+        except (NotFoundError, StoreError):
+            return None
+
+    def _make(self, stage: str, inputs: _TaskInputs, started: float) -> dict[str, np.ndarray]:
+        result: StageResult = self._opened[stage](inputs)
+        ragged_quantities(self._stages[stage].block_kind, [result.arrays])  # refused here, it costs only this shape
+        account = json.dumps({"summary": result.summary, "seconds": time.perf_counter() - started})
+        return {**result.arrays, ACCOUNT: np.frombuffer(account.encode(), dtype=np.uint8)}
+
+    def _require_store(self) -> None:
+        """Tells a store that is down, which raises `StoreError` here, from one damaged object."""
+        probe = f"probe/{uuid.uuid4().hex}"
+        self._arrays.stage(probe, {"probe": np.zeros(1, dtype=np.uint8)})
+        self._arrays.delete_staged(probe)
+
+
+def _staged_result(stage: str, key: str, name: str, made: Mapping[str, np.ndarray]) -> StagedResult:
+    account = json.loads(made[ACCOUNT].tobytes())
+    n_bytes = sum(array.nbytes for array in made.values())
+    return StagedResult(stage, key, name, n_bytes, account["seconds"], account["summary"])
+
+
+def _failure(stage: str, key: str, error: Exception, seconds: float) -> StageFailure:
+    if isinstance(error, PartwiseError):
+        return StageFailure(stage, key, str(error), seconds)
+    reason = f"{type(error).__name__}: {error}".strip().splitlines()[0][:MAX_REASON]
+    return StageFailure(stage, key, reason, seconds, "".join(traceback.format_exception(error)))
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """A block as written, None if nothing was left to pack, and which of the names given are in it, in order."""
+
+    address: BlockAddress | None
+    names: tuple[str, ...]
 
 
 class _Packer:
     """The one writer of blocks of a run."""
 
     def __init__(self, array_url: str) -> None:
-        self._arrays = open_array_store(array_url)
+        self._array_url = array_url
+        self._opened: ArrayStore | None = None
 
-    def pack(self, kind: BlockKind, staged: Sequence[str]) -> BlockAddress:
-        """Writes one block of the staged results, in order. It stays invisible until the catalog names it."""
-        shapes = [{q: a for q, a in self._arrays.read_staged(name).items() if q != ACCOUNT} for name in staged]
-        return self._arrays.write_block(kind, shapes)
+    @property
+    def _arrays(self) -> ArrayStore:
+        """Opened on first use: what a method raises reaches the driver as it is, unlike what `__init__` does."""
+        if self._opened is None:
+            self._opened = open_array_store(self._array_url)
+        return self._opened
+
+    def pack(self, kind: BlockKind, names: Sequence[str]) -> Packed:
+        """Writes one block of the staged results, in order. It stays invisible until the catalog names it.
+
+        Results that are no longer staged are left out: another run on the same workspace has published them.
+        """
+        found: list[str] = []
+        shapes: list[Mapping[str, np.ndarray]] = []
+        for name in names:
+            try:
+                staged = self._arrays.read_staged(name)
+            except NotFoundError:
+                continue
+            found.append(name)
+            shapes.append({quantity: array for quantity, array in staged.items() if quantity != ACCOUNT})
+        return Packed(self._arrays.write_block(kind, shapes) if shapes else None, tuple(found))
 
 
 StageWorker = ray.remote(_StageWorker)

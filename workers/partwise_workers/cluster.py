@@ -1,30 +1,43 @@
-"""Connecting to Ray: a local instance by default, the cluster that `RAY_ADDRESS` names otherwise."""
+"""Connecting to Ray: a local instance of our own by default, the cluster that `RAY_ADDRESS` names otherwise."""
 
 import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import ray
+from ray.exceptions import RayError
 
-from partwise.errors import StoreError
+from partwise_workers.errors import WorkerError
 
 logger = logging.getLogger(__name__)
 
-_THREAD_COUNTS = ("OMP", "OPENBLAS", "MKL", "NUMBA")
-ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in _THREAD_COUNTS}
-"""Environment of an actor that works on one shape on one core."""
+THREAD_VARIABLES = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "NUMBA_NUM_THREADS",
+    "OPENCV_FOR_THREADS_NUM",
+)
 
 LOCAL_OBJECT_STORE_BYTES = 128 * 1024 * 1024  # ids and small summaries travel, never arrays
+
+# Actors have an environment of their own, so that Ray would start these general workers for nothing.
+NO_SPARE_WORKERS = {"enable_worker_prestart": False, "prestart_worker_first_driver": False}
 
 
 @contextmanager
 def connected(n_cpus: int | None = None) -> Iterator[None]:
     """Ray for the time of the block. An instance that is already connected is used and left running.
 
+    Parameters
+    ----------
+    n_cpus : cores of a local instance; None takes all.
+
     Raises
     ------
-    StoreError : the cluster at `RAY_ADDRESS` cannot be reached.
+    WorkerError : the cluster at `RAY_ADDRESS` cannot be reached, or no local instance can be started.
     """
     if ray.is_initialized():
         yield
@@ -35,25 +48,71 @@ def connected(n_cpus: int | None = None) -> Iterator[None]:
         if address:
             ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         else:
-            ray.init(
-                num_cpus=n_cpus or os.cpu_count(),
-                include_dashboard=False,
-                log_to_driver=False,
-                logging_level=logging.ERROR,
-                object_store_memory=LOCAL_OBJECT_STORE_BYTES,
-            )
-    except (ConnectionError, RuntimeError, ValueError) as error:
+            _start_local(n_cpus or os.cpu_count() or 1)
+    except (OSError, RuntimeError, ValueError, RayError) as error:
         place = f"the Ray cluster at RAY_ADDRESS={address}" if address else "a local Ray"
-        raise StoreError(
-            f"{place} must be reachable but: {error}; start it, or unset RAY_ADDRESS to work locally"
-        ) from error
+        remedy = "start it, or unset RAY_ADDRESS to work locally" if address else "is there room in /tmp and /dev/shm?"
+        raise WorkerError(f"{place} must be reachable but: {error}; {remedy}") from error
     try:
         yield
     finally:
         ray.shutdown()
 
 
+def _start_local(n_cpus: int) -> None:
+    ray.init(
+        address="local",  # without it Ray joins any instance that somebody has started on this machine
+        num_cpus=n_cpus,
+        include_dashboard=False,
+        log_to_driver=False,
+        logging_level=logging.ERROR,
+        object_store_memory=LOCAL_OBJECT_STORE_BYTES,
+        _system_config=NO_SPARE_WORKERS,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Cores:
+    """Cores of the connected Ray: in all, and of its largest and smallest node that has any. At least one each."""
+
+    total: int
+    largest_node: int
+    smallest_node: int
+
+
+def cores() -> Cores:
+    """Counted anew: nodes come and go."""
+    counts = [int(node["Resources"].get("CPU", 0)) for node in ray.nodes() if node["Alive"]]  # type: ignore[no-untyped-call]
+    with_any = [count for count in counts if count > 0] or [1]
+    return Cores(sum(with_any), max(with_any), min(with_any))
+
+
 def n_cores() -> int:
     """Cores of the connected Ray, at least one."""
-    resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call]
-    return max(1, int(resources.get("CPU", 1)))
+    return cores().total
+
+
+@dataclass(frozen=True, slots=True)
+class Crew:
+    """How many actors work at a time, and with how many threads each."""
+
+    n_actors: int
+    n_threads: int
+
+    @classmethod
+    def of(cls, cores: Cores, n_shapes: int, n_wanted: int) -> "Crew":
+        """One core a shape; where there are fewer shapes than cores, what is left over goes to each as threads.
+
+        Parameters
+        ----------
+        n_wanted : actors that the user asks for, one thread each; 0 leaves it to the cores.
+        """
+        if n_wanted:
+            return cls(min(n_wanted, max(1, n_shapes)), 1)
+        n_actors = min(cores.total, max(1, n_shapes))
+        return cls(n_actors, max(1, min(cores.total // n_actors, cores.smallest_node)))
+
+
+def thread_environment(n_threads: int) -> dict[str, str]:
+    """Environment that has the numerical libraries of an actor use so many threads."""
+    return dict.fromkeys(THREAD_VARIABLES, str(n_threads))

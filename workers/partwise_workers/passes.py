@@ -8,11 +8,11 @@ from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.records import Collection, Model, NewMesh, NewScore
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
-from partwise_workers.actors import StagedResult
 from partwise_workers.cluster import connected
 from partwise_workers.model_store import ModelReference
 from partwise_workers.plan import plan_tasks
-from partwise_workers.runner import AlsoPublish, Published, StageRunner, nothing_else
+from partwise_workers.publishing import AlsoPublish, Published, nothing_else
+from partwise_workers.runner import StageRunner
 from partwise_workers.stage import Stage
 from partwise_workers.stages import evaluate as evaluate_stage
 from partwise_workers.stages import mesh as mesh_stage
@@ -20,10 +20,18 @@ from partwise_workers.stages.describe import DescribeStage
 from partwise_workers.stages.evaluate import EvaluateStage
 from partwise_workers.stages.mesh import MeshStage
 from partwise_workers.stages.refine import RefineStage
+from partwise_workers.staging import sweep_staging
+from partwise_workers.tasks import StagedResult
 
 
 def preprocess(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
-    """Reads, checks and describes every shape that is not yet described as the configuration says."""
+    """Reads, checks and describes every shape that is not yet described as the configuration says.
+
+    Raises
+    ------
+    StoreError : a store is full or cannot be reached; what is finished is kept for the next run. So do all passes.
+    WorkerError : Ray or its processes cannot be started. So do all passes.
+    """
     return _run(workspace, collection, _description_stages(workspace), (), on_progress, _meshes)
 
 
@@ -93,10 +101,12 @@ def _run(
 ) -> RunProgress:
     n_total = sum(1 for _ in plan_tasks(workspace, collection, stages, earlier))
     on_progress(RunProgress(0, 0, n_total))
-    if n_total == 0:
-        return RunProgress(0, 0, 0)
-    with connected():
-        runner = StageRunner(
-            workspace.catalog, workspace.arrays, workspace.array_url, stages, workspace.config.workers, also_publish
-        )
-        return runner.run(plan_tasks(workspace, collection, stages, earlier), n_total, on_progress)
+    result = RunProgress(0, 0, 0)
+    if n_total:
+        with connected():
+            runner = StageRunner(
+                workspace.catalog, workspace.arrays, workspace.array_url, stages, workspace.config.workers, also_publish
+            )
+            result = runner.run(plan_tasks(workspace, collection, stages, earlier), n_total, on_progress)
+    sweep_staging(workspace, collection, stages, earlier)
+    return result

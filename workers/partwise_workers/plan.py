@@ -6,8 +6,8 @@ from partwise.store.records import Collection, Shape, StageRun
 from partwise.workspace.ingest import source_object
 from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
-from partwise_workers.actors import BlockRow, ShapeTask, block_row
 from partwise_workers.stage import Stage, stage_key
+from partwise_workers.tasks import BlockRow, ShapeTask, block_row
 
 
 def plan_tasks(
@@ -32,14 +32,20 @@ def plan_tasks(
                 yield task
 
 
+def chain_keys(shape: Shape, chain: Sequence[Stage]) -> list[str]:
+    """The key of each stage of a chain, the first of which reads the shape's source."""
+    keys: list[str] = []
+    for stage in chain:
+        keys.append(stage_key(stage, keys[-1] if keys else shape.source_hash))
+    return keys
+
+
 def _plan(
     shape: Shape, chain: Sequence[Stage], n_earlier: int, done: Mapping[str, StageRun], failed: Mapping[str, str]
 ) -> ShapeTask | None:
-    key = shape.source_hash
     finished: dict[str, BlockRow] = {}
     needed: list[tuple[str, str]] = []
-    for position, stage in enumerate(chain):
-        key = stage_key(stage, key)
+    for position, (stage, key) in enumerate(zip(chain, chain_keys(shape, chain), strict=True)):
         run = done.get(stage.name)
         place = block_row(run)
         if run is not None and run.key == key and place is not None and not needed:

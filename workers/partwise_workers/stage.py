@@ -7,8 +7,9 @@ again does nothing, and changing one stage's parameters redoes that stage and th
 import hashlib
 import json
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -34,8 +35,12 @@ class ShapeInputs(Protocol):
         """One array that an earlier stage made of this shape."""
 
 
+RunStage: TypeAlias = Callable[[ShapeInputs], StageResult]
+"""Raises whatever is wrong with the shape; that costs the shape, never the run."""
+
+
 class Stage(Protocol):
-    """A frozen, picklable recipe. `open` is called once in each actor and may be costly (renderers, models)."""
+    """A frozen, picklable recipe."""
 
     @property
     def name(self) -> str: ...
@@ -51,7 +56,12 @@ class Stage(Protocol):
     def identity(self) -> Mapping[str, object]:
         """Code version and parameters, JSON-able: all that shapes the result besides what is read."""
 
-    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]: ...
+    def open(self, arrays: ArrayStore) -> AbstractContextManager[RunStage]:
+        """What costs much to make (renderer, model) is made once in each actor and closed when the actor ends.
+
+        What it raises is no shape's fault and ends the run.
+        """
+        ...
 
 
 def stage_key(stage: Stage, input_key: str) -> str:

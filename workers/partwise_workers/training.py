@@ -1,6 +1,5 @@
 """Trains a model on every labelled shape of a collection, in one actor that has all cores, and puts it on record."""
 
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -9,9 +8,10 @@ from typing import Any, overload
 import numpy as np
 import ray
 from jaxtyping import UInt16
+from ray.exceptions import RayError
 
 from partwise.config import TrainConfig
-from partwise.errors import NotEnoughDataError, PartwiseError
+from partwise.errors import NotEnoughDataError
 from partwise.learning.dataset import CodedGrids
 from partwise.learning.fitting import LabelledShape, fit
 from partwise.learning.recipe import Recipe
@@ -22,9 +22,11 @@ from partwise.store.open import open_array_store
 from partwise.store.records import Collection, Model, NewModel
 from partwise.workspace.segmentations import DESCRIBE, MESH
 from partwise.workspace.workspace import Workspace
-from partwise_workers.actors import BlockRow, block_row
-from partwise_workers.cluster import connected, n_cores
+from partwise_workers.cluster import connected, cores
+from partwise_workers.errors import WorkerError
 from partwise_workers.model_store import write_model
+from partwise_workers.pool import first_line, raise_own
+from partwise_workers.tasks import BlockRow, block_row
 
 BRANCHES = ("shape_context", "spin_image")
 POLL_S = 0.5
@@ -82,7 +84,7 @@ class _Trainer:
     """Fits one model. `progress` may be asked while `fit` runs: the actor has two threads."""
 
     def __init__(self, array_url: str) -> None:
-        self._arrays = open_array_store(array_url)
+        self._array_url = array_url
         self._done = (0, 0)
 
     def fit(
@@ -94,13 +96,14 @@ class _Trainer:
         n_threads: int,
     ) -> TrainingResult:
         started = time.perf_counter()
-        stored = StoredShapes(self._arrays, shapes, part_ids)
+        arrays = open_array_store(self._array_url)
+        stored = StoredShapes(arrays, shapes, part_ids)
         fitted = fit(stored, part_ids, recipe, refinement, self._note, n_threads)
         account: dict[str, Any] = {"recipe": asdict(recipe), "train_s": round(time.perf_counter() - started, 3)}
         if fitted.tuning is not None:
             account["smoothness"] = fitted.tuning.smoothness
             account["tuning"] = asdict(fitted.tuning)
-        return TrainingResult(write_model(self._arrays, fitted.model), account)
+        return TrainingResult(write_model(arrays, fitted.model), account)
 
     def progress(self) -> tuple[int, int]:
         """Iterations done, and in all; (0, 0) before training begins."""
@@ -116,11 +119,16 @@ Trainer = ray.remote(_Trainer)
 def train_collection(workspace: Workspace, collection: Collection, on_progress: Callable[[int, int], None]) -> Model:
     """Trains on the newest human or imported labels of every shape; the model is one more version of the collection's.
 
+    Shapes whose faces are all unlabelled teach nothing and are left out. The weights are in the array store before the
+    catalog has the model.
+
     Raises
     ------
     NotEnoughDataError : no shape has labels on its present, described mesh.
+    StoreError : a store is full or cannot be reached.
+    WorkerError : Ray cannot be started, or the training's process died.
     """
-    shapes = list(labelled_shapes(workspace, collection))
+    shapes = [shape for shape in labelled_shapes(workspace, collection) if shape.labels.any()]
     part_ids = tuple(sorted({int(part) for shape in shapes for part in np.unique(shape.labels) if part}))
     if not part_ids:
         raise NotEnoughDataError(
@@ -129,7 +137,7 @@ def train_collection(workspace: Workspace, collection: Collection, on_progress: 
     config = workspace.config.train
     refinement = workspace.config.refine if config.tune_smoothness else None
     with connected():
-        n_threads = min(n_cores(), os.cpu_count() or 1)
+        n_threads = cores().largest_node
         actor: Any = Trainer.options(num_cpus=n_threads, max_concurrency=2).remote(workspace.array_url)
         try:
             pending = actor.fit.remote(shapes, part_ids, recipe_of(config), refinement, n_threads)
@@ -150,16 +158,17 @@ def recipe_of(config: TrainConfig) -> Recipe:
 def _wait(
     actor: Any, pending: ray.ObjectRef[TrainingResult], on_progress: Callable[[int, int], None]
 ) -> TrainingResult:
-    while not ray.wait([pending], timeout=POLL_S)[0]:
-        done, n_total = ray.get(actor.progress.remote())
-        if n_total:
-            on_progress(done, n_total)
     try:
+        while not ray.wait([pending], timeout=POLL_S)[0]:
+            done, n_total = ray.get(actor.progress.remote())
+            if n_total:
+                on_progress(done, n_total)
         result: TrainingResult = ray.get(pending)
-    except ray.exceptions.RayTaskError as error:
-        if isinstance(error.cause, PartwiseError):
-            raise error.cause from error
-        raise
+    except RayError as error:
+        raise_own(error)
+        raise WorkerError(
+            f"training must run to its end but its process died: {first_line(error)}; free some memory, train again"
+        ) from error
     return result
 
 

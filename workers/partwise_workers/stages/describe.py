@@ -1,6 +1,7 @@
 """Stage `describe`: shape context, spin image, shape diameter and light-field descriptor of the stored mesh."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from partwise.store.array_store import ArrayStore
 from partwise.store.block_kinds import FEATURES
 from partwise.store.blocks import BlockKind
 from partwise.store.quantise import quantise
-from partwise_workers.stage import ShapeInputs, StageResult
+from partwise_workers.stage import RunStage, ShapeInputs, StageResult
 from partwise_workers.stages import mesh as mesh_stage
 
 NAME = "describe"
@@ -41,21 +42,22 @@ class DescribeStage:
         del parameters["light_field"]["renderer"]
         return {"version": 1, **parameters}
 
-    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]:  # noqa: ARG002 - the protocol's
-        describer = Describer(self.parameters)
+    @contextmanager
+    def open(self, arrays: ArrayStore) -> Iterator[RunStage]:  # noqa: ARG002 - the protocol's
+        with Describer(self.parameters) as describer:
+            yield lambda inputs: _describe(describer, inputs)
 
-        def run(inputs: ShapeInputs) -> StageResult:
-            description = describer.describe(mesh_stage.stored_mesh(inputs))
-            shape_context = quantise(description.shape_context)
-            spin_image = quantise(description.spin_image)
-            arrays_made = {
-                "shape_context": shape_context.codes,
-                "shape_context_scale": np.asarray(shape_context.scale),
-                "spin_image": spin_image.codes,
-                "spin_image_scale": np.asarray(spin_image.scale),
-                "shape_diameter": description.shape_diameter,
-                "light_field": description.light_field,
-            }
-            return StageResult(arrays_made, {"core_s": description.core_s})
 
-        return run
+def _describe(describer: Describer, inputs: ShapeInputs) -> StageResult:
+    description = describer.describe(mesh_stage.stored_mesh(inputs))
+    shape_context = quantise(description.shape_context)
+    spin_image = quantise(description.spin_image)
+    arrays_made = {
+        "shape_context": shape_context.codes,
+        "shape_context_scale": np.asarray(shape_context.scale),
+        "spin_image": spin_image.codes,
+        "spin_image_scale": np.asarray(spin_image.scale),
+        "shape_diameter": description.shape_diameter,
+        "light_field": description.light_field,
+    }
+    return StageResult(arrays_made, {"core_s": description.core_s})

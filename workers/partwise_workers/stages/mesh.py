@@ -1,6 +1,7 @@
 """Stage `mesh`: reads the ingested file, checks it, and stores it as float32 vertices and uint32 faces."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from partwise.mesh import TriMesh
 from partwise.store.array_store import ArrayStore
 from partwise.store.block_kinds import MESH
 from partwise.store.blocks import BlockKind
-from partwise_workers.stage import ShapeInputs, StageResult
+from partwise_workers.stage import RunStage, ShapeInputs, StageResult
 
 NAME = "mesh"
 
@@ -40,8 +41,8 @@ class MeshStage:
     def identity(self) -> Mapping[str, object]:
         return {"version": 1, **asdict(self.config)}
 
-    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]:  # noqa: ARG002 - the protocol's
-        return self._run
+    def open(self, arrays: ArrayStore) -> AbstractContextManager[RunStage]:  # noqa: ARG002 - the protocol's
+        return nullcontext(self._run)
 
     def _run(self, inputs: ShapeInputs) -> StageResult:
         data, file_name = inputs.source()

@@ -1,6 +1,7 @@
 """Stage `refine`: graph cut on the model's probabilities."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.array_store import ArrayStore
 from partwise.store.block_kinds import REFINEMENT
 from partwise.store.blocks import BlockKind
-from partwise_workers.stage import ShapeInputs, StageResult
+from partwise_workers.stage import RunStage, ShapeInputs, StageResult
 from partwise_workers.stages import evaluate
 from partwise_workers.stages.mesh import stored_mesh
 
@@ -40,8 +41,8 @@ class RefineStage:
     def identity(self) -> Mapping[str, object]:
         return {"version": 1, **asdict(self.parameters)}
 
-    def open(self, arrays: ArrayStore) -> Callable[[ShapeInputs], StageResult]:  # noqa: ARG002 - the protocol's
-        return self._run
+    def open(self, arrays: ArrayStore) -> AbstractContextManager[RunStage]:  # noqa: ARG002 - the protocol's
+        return nullcontext(self._run)
 
     def _run(self, inputs: ShapeInputs) -> StageResult:
         probabilities = inputs.array(evaluate.NAME, "probabilities").astype(np.float64)

@@ -1,0 +1,123 @@
+"""What ends a run early or strikes from outside: nothing finished is lost, no good shape is blamed."""
+
+import signal
+from collections.abc import Callable
+
+import psutil
+import pytest
+
+from partwise.errors import NotFoundError, StoreError
+from partwise.workspace.progress import RunProgress
+from partwise_workers.actors import _StageWorker
+from partwise_workers.errors import WorkerError
+from partwise_workers.publishing import Published, nothing_else
+from partwise_workers.tasks import StagedResult
+
+pytestmark = pytest.mark.usefixtures("local_ray")
+
+FOUR = {f"{number}.off": "" for number in range(4)}
+
+
+def kill_actor(kind: str) -> None:
+    """Kills the newest actor process of a kind among our own descendants."""
+    ours = psutil.Process().children(recursive=True)
+    actors = [process for process in ours if f"ray::{kind}" in " ".join(process.cmdline())]
+    max(actors, key=lambda process: process.create_time()).send_signal(signal.SIGKILL)
+
+
+def when(n_finished: int, act: Callable[[], object]) -> Callable[[RunProgress], None]:
+    """A listener that acts once, when so many shapes have finished."""
+
+    def listen(progress: RunProgress) -> None:
+        if progress.n_done + progress.n_failed == n_finished:
+            act()
+
+    return listen
+
+
+def once(act: Callable[[], object]) -> Callable[[], None]:
+    """Acts when it is called for the first time."""
+    left = [act]
+
+    def call() -> None:
+        if left:
+            left.pop()()
+
+    return call
+
+
+def raise_(error: BaseException) -> None:
+    raise error
+
+
+def test_what_a_crashed_run_left_staged_is_published_without_making_it_again(make_bench) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1)
+    worker = _StageWorker(bench.workspace.array_url, bench.stages)
+    worker.start()
+    for task in list(bench.plan())[:3]:
+        worker.run(task)
+    assert bench.run().n_done == 4
+    assert bench.n_noted("first") == 4
+    assert len(bench.done("second")) == 4
+
+
+def test_on_an_interrupt_what_is_finished_is_published(make_bench) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1)
+    with pytest.raises(KeyboardInterrupt):
+        bench.run(when(2, lambda: raise_(KeyboardInterrupt())))
+    assert len(bench.done("second")) == 2
+
+
+def test_a_packer_that_dies_is_replaced(make_bench) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1, block_shapes=2)
+    kill_packer = once(lambda: kill_actor("_Packer"))
+
+    def publish_and_kill(shape_id: int, result: StagedResult, row: int) -> Published:
+        kill_packer()
+        return nothing_else(shape_id, result, row)
+
+    bench.run(also_publish=publish_and_kill)
+    assert len(bench.done("second")) == 4
+
+
+def test_an_idle_actor_that_dies_costs_its_next_shape_an_attempt_only(make_bench) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1)
+    assert bench.run(when(2, lambda: kill_actor("_StageWorker"))) == RunProgress(4, 0, 4)
+
+
+def test_two_runs_at_once_publish_each_shape_once(make_bench) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1)
+    bench.run(when(2, lambda: bench.run()))
+    blocks = {run.block_name for run in bench.done("second").values()}
+    assert set(bench.done("second")) == set(FOUR)
+    assert blocks <= {block.name for block in bench.workspace.catalog.visible_blocks()}
+    assert list(bench.workspace.arrays.staged_keys()) == []
+
+
+def test_a_full_store_ends_the_run_and_blames_no_shape(make_bench) -> None:
+    bench = make_bench({"a.off": "", "b.off": "second: fills the disk"}).with_workers(n_actors=1)
+    with pytest.raises(StoreError, match="has no room for"):
+        bench.run()
+    assert bench.failed("second") == {}
+    assert bench.workspace.catalog.visible_blocks() == []
+
+
+def test_blocks_that_cannot_be_written_end_the_run_and_stay_staged(make_bench, tmp_path) -> None:
+    bench = make_bench({"a.off": ""})
+    (tmp_path / "workspace" / "arrays" / "blocks").touch()  # where a folder has to be
+    with pytest.raises(StoreError):
+        bench.run()
+    assert len(bench.workspace.arrays.staged_keys()) == 2
+
+
+def test_a_stage_that_refuses_to_open_ends_the_run_with_its_own_words(make_bench) -> None:
+    bench = make_bench({"a.off": ""}).with_stages(second={"opens": "refuses"})
+    with pytest.raises(NotFoundError, match="the model must be there"):
+        bench.run()
+
+
+def test_actors_that_cannot_start_end_the_run(make_bench) -> None:
+    bench = make_bench({"a.off": ""}).with_stages(first={"opens": "lacks a library"})
+    with pytest.raises(WorkerError, match="No module named 'embreex'"):
+        bench.run()
+    assert bench.failed("first") == {}
