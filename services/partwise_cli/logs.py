@@ -25,7 +25,10 @@ class FieldFormatter(logging.Formatter):
 
 
 def configure_logging(verbose: bool) -> None:
-    """Warnings of everything on stderr; with `verbose` also what Partwise says of its own doing."""
+    """Warnings that are logged go to stderr; with `verbose` also what Partwise says of its own doing.
+
+    Python's own warnings are for whoever calls a library wrongly: they are shown with `verbose` only.
+    """
     root = logging.getLogger()
     if not any(isinstance(handler, StderrHandler) for handler in root.handlers):
         handler = StderrHandler()
@@ -34,3 +37,5 @@ def configure_logging(verbose: bool) -> None:
     root.setLevel(logging.WARNING)
     for package in ("partwise", "partwise_workers", "partwise_cli"):
         logging.getLogger(package).setLevel(logging.INFO if verbose else logging.WARNING)
+    logging.captureWarnings(True)
+    logging.getLogger("py.warnings").setLevel(logging.WARNING if verbose else logging.ERROR)
