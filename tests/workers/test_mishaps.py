@@ -68,7 +68,7 @@ def test_on_an_interrupt_what_is_finished_is_published(make_bench) -> None:
     assert len(bench.done("second")) == 2
 
 
-def test_a_packer_that_dies_is_replaced(make_bench) -> None:
+def test_a_packer_that_dies_is_replaced(make_bench, caplog) -> None:
     bench = make_bench(FOUR).with_workers(n_actors=1, block_shapes=2)
     kill_packer = once(lambda: kill_actor("_Packer"))
 
@@ -77,12 +77,14 @@ def test_a_packer_that_dies_is_replaced(make_bench) -> None:
         return nothing_else(shape_id, result, row)
 
     bench.run(also_publish=publish_and_kill)
+    assert "the packer died" in caplog.text
     assert len(bench.done("second")) == 4
 
 
 def test_an_idle_actor_that_dies_costs_its_next_shape_an_attempt_only(make_bench) -> None:
     bench = make_bench(FOUR).with_workers(n_actors=1)
     assert bench.run(when(2, lambda: kill_actor("_StageWorker"))) == RunProgress(4, 0, 4)
+    assert sorted(run.attempts for run in bench.done("second").values()) == [1, 1, 1, 2]
 
 
 def test_two_runs_at_once_publish_each_shape_once(make_bench) -> None:

@@ -1,0 +1,200 @@
+"""Training on stored shapes: what is learnt from, what is put on record, and that a seed settles the result."""
+
+import json
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+import trimesh
+
+from partwise.errors import NotEnoughDataError
+from partwise.mesh import TriMesh
+from partwise.store.block_kinds import FEATURES, MESH, N_BINS, N_LIGHT_FIELD
+from partwise.store.records import (
+    Collection,
+    Model,
+    NewBlock,
+    NewMesh,
+    NewRevision,
+    NewShape,
+    NewStageRun,
+    RevisionKind,
+)
+from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
+from partwise_workers import training
+from partwise_workers.errors import WorkerError
+from partwise_workers.model_store import ModelReference, read_model
+from partwise_workers.training import _Trainer, labelled_shapes, recipe_of, train_collection
+
+N_SHAPES = 4
+BALL = trimesh.creation.icosphere(subdivisions=2)
+MESHES = [TriMesh(BALL.vertices * (1 + 0.1 * number), BALL.faces) for number in range(N_SHAPES)]
+LABELS = np.where(BALL.triangles_center[:, 2] > 0, 1, 2).astype(np.uint16)
+
+
+@pytest.fixture
+def described(tmp_path: Path) -> Iterator[tuple[Workspace, Collection]]:
+    with described_balls(tmp_path / "ws") as opened:
+        yield opened
+
+
+@contextmanager
+def described_balls(path: Path) -> Iterator[tuple[Workspace, Collection]]:
+    """Four described balls of 320 faces whose features tell their halves apart, and nobody's labels."""
+    init_workspace(path)
+    with open_workspace(path) as workspace:
+        collection = workspace.catalog.create_collection("balls", ["upper", "lower"])
+        new = [NewShape(f"{number}.off", f"{number}", ".off") for number in range(N_SHAPES)]
+        ids = [ingested.shape_id for ingested in workspace.catalog.add_shapes(collection.id, new)]
+        publish(workspace, ids)
+        config = replace(workspace.config, train=replace(workspace.config.train, n_iterations=20, n_snapshots=2))
+        yield replace(workspace, config=config), collection
+
+
+def publish(workspace: Workspace, ids: list[int]) -> None:
+    meshes = [{"vertices": m.vertices.astype(np.float32), "faces": m.faces.astype(np.uint32)} for m in MESHES]
+    block = workspace.arrays.write_block(MESH, meshes)
+    workspace.catalog.publish_block(
+        NewBlock(block.name, "mesh", block.n_shapes, block.n_bytes, block.checksum),
+        [NewStageRun(shape_id, "mesh", f"m{shape_id}", row) for row, shape_id in enumerate(ids)],
+        meshes=[
+            NewMesh(shape_id, MESHES[row].content_hash(), MESHES[row].n_vertices, MESHES[row].n_faces, row)
+            for row, shape_id in enumerate(ids)
+        ],
+    )
+    rng = np.random.default_rng(0)
+    block = workspace.arrays.write_block(FEATURES, [features(rng) for _ in ids])
+    workspace.catalog.publish_block(
+        NewBlock(block.name, "features", block.n_shapes, block.n_bytes, block.checksum),
+        [NewStageRun(shape_id, "describe", f"d{shape_id}", row) for row, shape_id in enumerate(ids)],
+    )
+
+
+def features(rng: np.random.Generator) -> dict[str, np.ndarray]:
+    codes = rng.integers(0, 128, (len(LABELS), N_BINS), dtype=np.uint8) + (LABELS == 1)[:, None].astype(np.uint8) * 100
+    return {
+        "shape_context": codes,
+        "shape_context_scale": np.asarray(0.01, dtype=np.float32),
+        "spin_image": codes[:, ::-1].copy(),
+        "spin_image_scale": np.asarray(0.01, dtype=np.float32),
+        "shape_diameter": np.ones(len(LABELS), dtype=np.float32),
+        "light_field": np.zeros(N_LIGHT_FIELD, dtype=np.uint8),
+    }
+
+
+def label(workspace: Workspace, collection: Collection, number: int, labels: np.ndarray, kind: str = "human") -> int:
+    """Commits labels of a shape; returns the revision's id."""
+    catalog = workspace.catalog
+    people = catalog.list_people()
+    author = people[0].id if people else catalog.add_person("ann").id
+    shape = catalog.shape_by_key(collection.id, f"{number}.off")
+    new = NewRevision(shape.id, MESHES[number].content_hash(), RevisionKind(kind), author, 1, labels)
+    return catalog.add_revision(new).id
+
+
+def train(workspace: Workspace, collection: Collection) -> Model:
+    return train_collection(workspace, collection, lambda done, n_total: None)
+
+
+def test_without_labels_there_is_nothing_to_train_on(described) -> None:
+    with pytest.raises(NotEnoughDataError, match="confirm those"):
+        train(*described)
+
+
+def test_reference_labels_are_never_trained_on(described) -> None:
+    label(*described, 0, LABELS, "reference")
+    with pytest.raises(NotEnoughDataError):
+        train(*described)
+
+
+def test_shapes_without_a_labelled_face_alone_are_not_enough(described) -> None:
+    label(*described, 0, np.zeros_like(LABELS))
+    with pytest.raises(NotEnoughDataError):
+        train(*described)
+
+
+def test_labels_of_another_mesh_are_left_out(described) -> None:
+    workspace, collection = described
+    label(workspace, collection, 0, LABELS)
+    shape = workspace.catalog.shape_by_key(collection.id, "0.off")
+    block = NewBlock("blocks/mesh/other", "mesh", 1, 1, "0" * 64)
+    workspace.catalog.publish_block(
+        block, [NewStageRun(shape.id, "mesh", "other", 0)], meshes=[NewMesh(shape.id, "f" * 64, 5, 6, 0)]
+    )
+    assert list(labelled_shapes(workspace, collection)) == []
+
+
+def test_the_configurations_recipe_is_the_one_trained(described) -> None:
+    assert recipe_of(described[0].config.train).n_iterations == 20
+
+
+@dataclass(frozen=True)
+class Trained:
+    workspace: Workspace
+    collection: Collection
+    revisions: list[int]
+    model: Model
+
+
+@pytest.fixture(scope="module")
+def trained(local_ray: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Trained]:
+    """A model of the labels of shapes 0 to 2, where shape 3 has labels that say nothing of any face."""
+    with described_balls(tmp_path_factory.mktemp("training") / "ws") as (workspace, collection):
+        revisions = [label(workspace, collection, number, LABELS) for number in range(3)]
+        label(workspace, collection, 3, np.zeros_like(LABELS))
+        yield Trained(workspace, collection, revisions, train(workspace, collection))
+
+
+def test_the_same_seed_gives_the_same_weights_whatever_the_threads(trained: Trained) -> None:
+    shapes = list(labelled_shapes(trained.workspace, trained.collection))[:3]
+    recipe = recipe_of(trained.workspace.config.train)
+    again = _Trainer(trained.workspace.array_url).fit(shapes, (1, 2), recipe, None, n_threads=1)
+    assert again.weights_key == trained.model.weights_key
+
+
+def test_another_seed_gives_other_weights(trained: Trained) -> None:
+    shapes = list(labelled_shapes(trained.workspace, trained.collection))[:3]
+    recipe = replace(recipe_of(trained.workspace.config.train), seed=1)
+    again = _Trainer(trained.workspace.array_url).fit(shapes, (1, 2), recipe, None, n_threads=1)
+    assert again.weights_key != trained.model.weights_key
+
+
+def test_shapes_without_a_labelled_face_are_left_out(trained: Trained) -> None:
+    assert sorted(trained.model.revision_ids) == sorted(trained.revisions)
+
+
+def test_the_files_of_a_model_on_record_are_there(trained: Trained) -> None:
+    assert read_model(trained.workspace.arrays, ModelReference.of(trained.model)).part_ids == (1, 2)
+
+
+def test_the_recipe_on_record_says_how_the_model_came_to_be(trained: Trained) -> None:
+    recipe = json.loads(json.dumps(trained.model.recipe))
+    assert recipe["recipe"]["n_iterations"] == 20
+    assert recipe["smoothness"] == recipe["tuning"]["smoothness"]
+
+
+def test_a_training_process_that_dies_is_one_clear_error(local_ray: None, described, monkeypatch) -> None:
+    workspace, collection = described
+    label(workspace, collection, 0, LABELS)
+    endless = replace(workspace.config.train, n_iterations=1_000_000)
+    workspace = replace(workspace, config=replace(workspace.config, train=endless))
+    monkeypatch.setattr(training, "POLL_S", 0.1)
+    is_killed = threading.Event()
+
+    def kill(done: int, n_total: int) -> None:
+        if not is_killed.is_set():
+            is_killed.set()
+            for process in psutil.Process().children(recursive=True):
+                if "ray::_Trainer" in " ".join(process.cmdline()):
+                    os.kill(process.pid, signal.SIGKILL)
+
+    with pytest.raises(WorkerError, match="its process died"):
+        train_collection(workspace, collection, kill)
+    assert workspace.catalog.latest_model(collection.id) is None
