@@ -14,6 +14,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, IntegrityError, NoSuchModu
 from partwise.errors import ConfigError, ConflictError, StoreError
 
 BUSY_TIMEOUT_S = 30.0
+CONNECT_TIMEOUT_S = 10  # the driver's own is over two minutes
 _WRITES = "partwise_writes"
 
 
@@ -46,8 +47,10 @@ def connect_engine(url: URL) -> Engine:
     ------
     StoreError : the database's driver is not installed.
     """
+    is_sqlite = url.drivername == "sqlite"
+    patience = {} if is_sqlite or "connect_timeout" in url.query else {"connect_timeout": CONNECT_TIMEOUT_S}
     try:
-        engine = create_engine(url, pool_pre_ping=url.drivername != "sqlite")
+        engine = create_engine(url, pool_pre_ping=not is_sqlite, connect_args=patience)
     except (ImportError, NoSuchModuleError) as error:
         raise StoreError(f"{url.drivername} needs a driver ({error}); install partwise[cloud]") from error
     if engine.dialect.name == "sqlite":

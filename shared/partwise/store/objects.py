@@ -126,42 +126,43 @@ def _sync_folder(folder: Path) -> None:
 
 
 class RemoteObjects:
-    """Objects of an fsspec file system below `root`."""
+    """Objects of an fsspec file system below `root`; `where` names the store in messages."""
 
-    def __init__(self, file_system: Any, root: str) -> None:
+    def __init__(self, file_system: Any, root: str, where: str) -> None:
         self._fs = file_system
         self._root = root.rstrip("/")
+        self._where = where
 
     def put(self, key: str, data: bytes) -> None:
-        with storing(self._root, key):
+        with storing(self._where, key):
             self._fs.pipe_file(self._path(key), data)
 
     def get(self, key: str) -> bytes:
-        with storing(self._root, key):
+        with storing(self._where, key):
             return bytes(self._fs.cat_file(self._path(key)))
 
     def exists(self, key: str) -> bool:
-        with storing(self._root, key):
+        with storing(self._where, key):
             return bool(self._fs.isfile(self._path(key)))
 
     def delete(self, key: str) -> None:
-        with storing(self._root, key):
+        with storing(self._where, key):
             if self._fs.isfile(self._path(key)):
                 self._fs.rm_file(self._path(key))
 
     def delete_folder(self, folder: str) -> None:
-        with storing(self._root, folder):
+        with storing(self._where, folder or "its top folder"):
             if self._fs.exists(self._path(folder)):
                 self._fs.rm(self._path(folder), recursive=True)
 
     def keys(self, folder: str) -> Sequence[str]:
-        with storing(self._root, folder):
+        with storing(self._where, folder or "its top folder"):
             self._fs.invalidate_cache()
             found = self._fs.find(self._path(folder))
             return sorted(self._relative(path) for path in found)
 
     def folders(self, folder: str) -> Sequence[str]:
-        with storing(self._root, folder):
+        with storing(self._where, folder or "its top folder"):
             self._fs.invalidate_cache()
             try:
                 entries = self._fs.ls(self._path(folder), detail=True)

@@ -86,9 +86,9 @@ def open_array_store(
         raise ConfigError(f"a store URL must be a folder or an fsspec URL but is {url!r}: {error}") from error
     except ImportError as error:
         raise StoreError(f"{protocol}:// needs a driver ({error}); install partwise[cloud]") from error
-    objects = RemoteObjects(file_system, root)
+    objects = RemoteObjects(file_system, root, url)
+    objects.folders("")
     with storing(url, "its top folder"):
-        objects.folders("")
         zarr_store = FsspecStore.from_url(url, storage_options=given, read_only=True)
     return ZarrArrayStore(objects, zarr_store, url, clock)
 
