@@ -133,8 +133,9 @@ def gc(
     with open_workspace(ws) as workspace:
         report = collect_garbage(workspace, timedelta(hours=older_than_h))
     typer.echo(
-        f"{counted(report.n_unused_blocks, 'replaced block')} ({report.n_bytes / 1e6:.1f} MB) and "
-        f"{counted(report.n_orphan_blocks, 'block')} of crashed runs swept"
+        f"{counted(report.n_unused_blocks, 'replaced block')} ({report.n_bytes / 1e6:.1f} MB), "
+        f"{counted(report.n_orphan_blocks, 'block')} and {counted(report.n_unfinished, 'unfinished write')} "
+        "of crashed runs swept"
     )
 
 
@@ -161,5 +162,8 @@ def _nothing_to_do(state: "CollectionStatus") -> str:
 
 
 def _report_failures(state: "CollectionStatus") -> None:
-    lines = [f"{failure.source_key}: {failure.stage}: {failure.reason}" for failure in state.failures]
+    lines = [
+        f"{failure.source_key}: {failure.stage}: {failure.reason.removeprefix(f'{failure.source_key}: ')}"
+        for failure in state.failures
+    ]
     warning_lines(lines, _n_failed(state), MAX_REASONS)

@@ -10,10 +10,14 @@ PAGE = 1000
 
 @dataclass(frozen=True, slots=True)
 class GarbageReport:
-    """Blocks that no current result needs, and blocks that no catalog row names."""
+    """Blocks that no current result needs, blocks that no catalog row names, and halves that killed writes left.
+
+    n_bytes : of the unused blocks.
+    """
 
     n_unused_blocks: int
     n_orphan_blocks: int
+    n_unfinished: int
     n_bytes: int
 
 
@@ -32,7 +36,8 @@ def collect_garbage(workspace: Workspace, orphans_older_than: timedelta) -> Garb
     orphans = workspace.arrays.orphans(_visible_names(workspace), orphans_older_than)
     for name in orphans:
         workspace.arrays.delete_block(name)
-    return GarbageReport(n_unused, len(orphans), n_bytes)
+    n_unfinished = workspace.arrays.sweep_unfinished(orphans_older_than)
+    return GarbageReport(n_unused, len(orphans), n_unfinished, n_bytes)
 
 
 def _visible_names(workspace: Workspace) -> set[str]:

@@ -1,6 +1,7 @@
 """`gc` sweeps what nothing needs, and only that."""
 
 from datetime import timedelta
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from partwise.workspace.labelling import commit_labels
 from partwise.workspace.shapes import load_mesh, shape_mesh
 
 AT_ONCE = timedelta(0)
-NOTHING = GarbageReport(0, 0, 0)
+NOTHING = GarbageReport(0, 0, 0, 0)
 
 
 def test_what_is_in_use_stays(filled) -> None:
@@ -30,7 +31,7 @@ def test_replaced_blocks_are_swept(filled) -> None:
     old = publish_features(filled.workspace, ids, rng)
     n_bytes = filled.workspace.catalog.block(old).n_bytes
     new = publish_features(filled.workspace, ids, rng, key="describe-2")
-    assert collect_garbage(filled.workspace, AT_ONCE) == GarbageReport(1, 0, n_bytes)
+    assert collect_garbage(filled.workspace, AT_ONCE) == GarbageReport(1, 0, 0, n_bytes)
     names = filled.workspace.arrays.block_names()
     assert old not in names
     assert new in names
@@ -49,7 +50,7 @@ def test_orphans_are_swept_once_they_are_old(filled) -> None:
     name = filled.workspace.arrays.write_block(REFINEMENT, [{"labels": np.zeros(4, dtype=np.uint16)}]).name
     assert collect_garbage(filled.workspace, timedelta(hours=1)) == NOTHING
     assert name in filled.workspace.arrays.block_names()
-    assert collect_garbage(filled.workspace, timedelta(seconds=-1)) == GarbageReport(0, 1, 0)
+    assert collect_garbage(filled.workspace, timedelta(seconds=-1)) == GarbageReport(0, 1, 0, 0)
     assert name not in filled.workspace.arrays.block_names()
 
 
@@ -63,6 +64,14 @@ def test_a_labelled_mesh_outlives_its_block(filled) -> None:
     assert collect_garbage(filled.workspace, AT_ONCE).n_unused_blocks == 1
     kept = filled.workspace.catalog.mesh(shape.id, labelled.mesh_hash)
     assert np.array_equal(load_mesh(filled.workspace, kept).faces, filled.meshes["b.off"].faces)
+
+
+def test_what_killed_writes_left_is_swept_once_it_is_old(filled) -> None:
+    partial = Path(filled.workspace.array_url) / ".partial" / "half"
+    partial.write_bytes(b"half of it")
+    assert collect_garbage(filled.workspace, timedelta(hours=1)) == NOTHING
+    assert collect_garbage(filled.workspace, timedelta(seconds=-1)) == GarbageReport(0, 0, 1, 0)
+    assert not partial.exists()
 
 
 def test_sources_stay(filled) -> None:
