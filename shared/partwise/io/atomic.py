@@ -2,6 +2,7 @@
 
 import os
 import secrets
+from contextlib import suppress
 from pathlib import Path
 
 from partwise.errors import StoreError
@@ -27,7 +28,8 @@ def write_atomically(path: Path | str, data: bytes) -> None:
             os.fsync(file.fileno())
         partial.replace(target)
     except OSError as error:
-        partial.unlink(missing_ok=True)
+        with suppress(OSError):  # where the folder is a file, there is nothing to take away either
+            partial.unlink()
         raise StoreError(
             f"{target}: cannot be written: {error.strerror or error}; free space or choose another folder"
         ) from error
