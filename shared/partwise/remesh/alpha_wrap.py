@@ -4,10 +4,10 @@ import logging
 
 import numpy as np
 import pymeshlab
+from jaxtyping import Float
 
 from partwise.errors import DegenerateMeshError
 from partwise.geometry.faces import bounding_box_diagonal, face_areas
-from partwise.geometry.submesh import keep_faces
 from partwise.mesh import TriMesh
 from partwise.remesh.parameters import AlphaWrap
 
@@ -27,12 +27,12 @@ def alpha_wrap(mesh: TriMesh, parameters: AlphaWrap) -> TriMesh:
 
     Source: Portaneri, Rouxel-Labbé, Hemmer, Cohen-Steiner, Alliez 2022.
     """
-    has_area = face_areas(mesh) > 0
-    if not has_area.any():
-        raise DegenerateMeshError("a mesh must have area to be wrapped but has none; check the export's scale")
-    solid = keep_faces(mesh, has_area)
+    corners = _distinct_triangles(mesh).reshape(-1, 3)
+    # Each triangle on corners of its own: pymeshlab hands CGAL a half-edge mesh and leaves out, without a word, faces
+    # that would make it non-manifold or misoriented. The wrap would then run in through the holes.
+    loose = np.arange(len(corners)).reshape(-1, 3)
     meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.add_mesh(pymeshlab.Mesh(solid.vertices, solid.faces))
+    meshes.add_mesh(pymeshlab.Mesh(corners, loose))
     meshes.generate_alpha_wrap(
         alpha=pymeshlab.PercentageValue(parameters.alpha_percent),
         offset=pymeshlab.PercentageValue(parameters.offset_percent),
@@ -41,6 +41,17 @@ def alpha_wrap(mesh: TriMesh, parameters: AlphaWrap) -> TriMesh:
     if wrapped.face_number() == 0:
         raise DegenerateMeshError(f"wrapping with {parameters} left no faces; try a coarser alpha")
     return TriMesh(wrapped.vertex_matrix(), wrapped.face_matrix().astype(np.int64))
+
+
+def _distinct_triangles(mesh: TriMesh) -> Float[np.ndarray, "t 3 3"]:
+    """Corners of the faces that have area, those of several faces in one place once: doubles cost time only."""
+    has_area = face_areas(mesh) > 0
+    if not has_area.any():
+        raise DegenerateMeshError("a mesh must have area to be wrapped but has none; check the export's scale")
+    place = np.unique(mesh.vertices, axis=0, return_inverse=True)[1].ravel()
+    faces = mesh.faces[has_area]
+    first = np.unique(np.sort(place[faces], axis=1), axis=0, return_index=True)[1]
+    return mesh.vertices[faces[np.sort(first)]]
 
 
 def fitted_wrap(mesh: TriMesh, parameters: AlphaWrap, n_faces: int) -> AlphaWrap:

@@ -11,7 +11,7 @@ import igl
 import numpy as np
 import pymeshlab
 
-from partwise.errors import MeshError, ParameterError
+from partwise.errors import MeshError
 from partwise.geometry.submesh import keep_faces
 from partwise.mesh import TriMesh
 from partwise.remesh.accept_as_is import defects_of
@@ -39,13 +39,9 @@ def decimate(mesh: TriMesh, n_faces: int, tolerance: float = 0.05) -> Decimation
     """A closed manifold in one piece with `n_faces` faces, give or take the tolerance (a share).
 
     Each reducer's result is examined and the first clean one taken. The mesh itself is returned where it is as small.
-
-    Raises
-    ------
-    ParameterError : n_faces is below 4, the least a closed surface has.
     """
     if n_faces < 4:
-        raise ParameterError(f"a closed surface has 4 faces or more but {n_faces} were asked for; ask for more")
+        return Decimation(None, "", (f"a closed surface has 4 faces or more but {n_faces} were asked for",))
     if mesh.n_faces <= n_faces * (1.0 + tolerance):
         return Decimation(mesh, "none", ())
     failures: list[str] = []

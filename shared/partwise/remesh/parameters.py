@@ -79,11 +79,10 @@ class RemeshParameters:
 
     wraps: tuple[AlphaWrap, ...] = (
         AlphaWrap(0.15, 0.1),
-        AlphaWrap(0.15, 0.35),  # joins pieces that nearly touch, at full detail
-        AlphaWrap(1.0, 0.25),
-        AlphaWrap(1.6, 0.5),
+        AlphaWrap(0.15, 0.4),  # a thicker skin joins pieces that do not quite touch, at full detail
+        AlphaWrap(0.15, 1.0),
     )
-    contours: tuple[ImplicitContour, ...] = (ImplicitContour(160), ImplicitContour(96), ImplicitContour(64, 1.5))
+    contours: tuple[ImplicitContour, ...] = (ImplicitContour(128), ImplicitContour(64))
     levels: tuple[int, ...] = (50_000, 20_000, 10_000, 5_000)
     level_tolerance: float = 0.05
     max_faces_as_is: int = 50_000
