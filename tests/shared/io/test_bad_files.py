@@ -205,7 +205,7 @@ def test_missing_folders_are_made(tmp_path):
     assert (tmp_path / "a" / "b" / "file").read_bytes() == b"content"
 
 
-def test_a_file_in_the_place_of_the_folder_is_named(tmp_path: Path) -> None:
+def test_a_file_in_the_place_of_the_folder_is_named(tmp_path):
     (tmp_path / "folder").write_bytes(b"")
     with pytest.raises(StoreError, match=r"shape\.off: cannot be written: .*; free space or choose another folder"):
         write_atomically(tmp_path / "folder" / "shape.off", b"new")
