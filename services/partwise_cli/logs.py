@@ -19,7 +19,9 @@ class FieldFormatter(logging.Formatter):
     """`warning: attempt failed (shape=a.off, attempt=1)`."""
 
     def format(self, record: logging.LogRecord) -> str:
-        fields: dict[str, Any] = {key: value for key, value in vars(record).items() if key not in _USUAL}
+        # an underscore marks what libraries note on records for themselves, as Ray does
+        extra = (key for key in vars(record) if key not in _USUAL and not key.startswith("_"))
+        fields: dict[str, Any] = {key: vars(record)[key] for key in extra}
         shown = f" ({', '.join(f'{key}={value}' for key, value in fields.items())})" if fields else ""
         return f"{record.levelname.lower()}: {record.getMessage()}{shown}"
 

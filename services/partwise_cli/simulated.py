@@ -1,6 +1,7 @@
 """Writes simulated collections in the layout of the labelled Princeton benchmark: `<id>.off`, `<id>_labels.txt`."""
 
 import os
+import signal
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -42,10 +43,18 @@ def write_collection(request: SimulationRequest, out: Path, on_progress: Advance
     """Writes the shapes, on all cores. Same request, same bytes, whatever the number of cores."""
     # spawn: a forked child would inherit the threads' locks of the numerical libraries.
     n_processes = min(os.cpu_count() or 1, request.n_shapes)
-    with ProcessPoolExecutor(n_processes, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(n_processes, get_context("spawn"), _leave_interrupts_to_the_parent) as pool:
         done = pool.map(partial(_write_shape, request, out), range(request.n_shapes))
-        for n_done, _ in enumerate(done, start=1):
-            on_progress(n_done, request.n_shapes)
+        try:
+            for n_done, _ in enumerate(done, start=1):
+                on_progress(n_done, request.n_shapes)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _write_shape(request: SimulationRequest, out: Path, index: int) -> None:

@@ -1,0 +1,182 @@
+"""init, ingest, preprocess, retry, status, gc, migrate: what they say and how they end."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from partwise.errors import ConfigError, ConflictError, LabelError, NotFoundError
+from partwise.io.write import write_mesh
+from partwise.mesh import TriMesh
+from partwise.store.records import NewFailure
+from partwise.workspace.progress import RunProgress
+from partwise.workspace.workspace import open_workspace
+from partwise_workers import passes
+
+
+def _fail(ws: Path, source_key: str, stage: str, reason: str) -> None:
+    with open_workspace(ws) as workspace:
+        collection = workspace.catalog.get_collection("mugs")
+        shape = workspace.catalog.shape_by_key(collection.id, source_key)
+        workspace.catalog.record_failure(NewFailure(shape.id, stage, "k", reason))
+
+
+# init
+
+
+def test_init_says_what_it_made(invoke, tmp_path: Path) -> None:
+    result = invoke("init", tmp_path / "ws", "-c", "chairs", "--parts", "seat, back,leg")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout == f"{tmp_path}/ws: collection 'chairs' with 3 parts: seat, back, leg\n"
+    with open_workspace(tmp_path / "ws") as workspace:
+        assert workspace.catalog.get_collection("chairs").settings == {"up": "y"}
+
+
+def test_init_adds_a_collection_to_a_workspace(invoke, empty: Path) -> None:
+    assert invoke("init", empty, "-c", "lamps", "--parts", "shade", "--up", "z").exit_code == 0
+    with open_workspace(empty) as workspace:
+        assert [each.name for each in workspace.catalog.list_collections()] == ["lamps", "mugs"]
+        assert workspace.catalog.get_collection("lamps").settings == {"up": "z"}
+
+
+@pytest.mark.parametrize(
+    ("collection", "parts", "kind"),
+    [("mugs", "body", ConflictError), ("cups", " , ", LabelError), ("cups", "body,body", LabelError)],
+)
+def test_init_refuses_a_wrong_collection(invoke, empty: Path, collection: str, parts: str, kind: type) -> None:
+    assert isinstance(invoke("init", empty, "-c", collection, "--parts", parts).exception, kind)
+
+
+def test_init_knows_three_axes(invoke, tmp_path: Path) -> None:
+    assert invoke("init", tmp_path / "ws", "-c", "c", "--parts", "p", "--up", "w").exit_code == 2
+    assert not (tmp_path / "ws").exists()
+
+
+# ingest
+
+
+def test_ingest_counts_what_it_did(invoke, empty: Path, tmp_path: Path, tetrahedron: TriMesh) -> None:
+    write_mesh(tetrahedron, tmp_path / "in" / "a.off")
+    first, second = (invoke("ingest", empty, tmp_path / "in") for _ in range(2))
+    assert first.stdout == "1 shape added, 0 unchanged, 0 changed, 0 files refused\n"
+    assert second.stdout == "0 shapes added, 1 unchanged, 0 changed, 0 files refused\n"
+    assert (first.exit_code, second.exit_code) == (0, 0)
+
+
+def test_ingest_needs_a_folder(invoke, empty: Path) -> None:
+    result = invoke("ingest", empty, empty / "missing")
+    assert isinstance(result.exception, NotFoundError)
+    assert str(empty / "missing") in str(result.exception)
+
+
+def test_a_second_collection_must_be_named(invoke, empty: Path, tmp_path: Path, tetrahedron: TriMesh) -> None:
+    write_mesh(tetrahedron, tmp_path / "in" / "a.off")
+    invoke("init", empty, "-c", "lamps", "--parts", "shade")
+    assert isinstance(invoke("ingest", empty, tmp_path / "in").exception, NotFoundError)
+    assert invoke("ingest", empty, tmp_path / "in", "--collection", "lamps").exit_code == 0
+
+
+# preprocess
+
+
+@pytest.mark.parametrize(
+    ("progress", "line", "code"),
+    [
+        (RunProgress(1, 0, 1), "1 shape preprocessed, 0 failed\n", 0),
+        (RunProgress(2, 1, 3), "2 shapes preprocessed, 1 failed\n", 1),
+        (RunProgress(0, 0, 0), "nothing to do\n", 0),
+    ],
+)
+def test_preprocess_says_how_it_went(
+    invoke, described: Path, monkeypatch: pytest.MonkeyPatch, progress: RunProgress, line: str, code: int
+) -> None:
+    monkeypatch.setattr(passes, "preprocess", lambda workspace, collection, on_progress: progress)
+    result = invoke("preprocess", described)
+    assert (result.stdout, result.exit_code) == (line, code)
+
+
+def test_preprocess_says_why_shapes_failed(invoke, ingested: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _fail(ingested, "a.off", "mesh", "a.off: faces must be non-empty; is the file truncated?")
+    monkeypatch.setattr(passes, "preprocess", lambda *_: RunProgress(2, 1, 3))
+    result = invoke("preprocess", ingested)
+    assert result.stderr == "warning: a.off: mesh: faces must be non-empty; is the file truncated?\n"
+
+
+def test_preprocess_reminds_of_shapes_that_failed_before(
+    invoke, ingested: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _fail(ingested, "a.off", "mesh", "too flat")
+    monkeypatch.setattr(passes, "preprocess", lambda *_: RunProgress(0, 0, 0))
+    result = invoke("preprocess", ingested)
+    assert result.exit_code == 0
+    assert result.stdout == "nothing to do; 1 shape failed before: see `partwise status`, then `partwise retry`\n"
+
+
+def test_preprocess_of_nothing_says_what_to_do_first(invoke, empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(passes, "preprocess", lambda *_: RunProgress(0, 0, 0))
+    assert "has no shapes; add some with `partwise ingest`" in invoke("preprocess", empty).stdout
+
+
+# retry
+
+
+def test_retry_forgets_failures(invoke, ingested: Path) -> None:
+    for key in ("a.off", "b.off"):
+        _fail(ingested, key, "mesh", "too flat")
+    _fail(ingested, "c.off", "describe", "too slow")
+    assert invoke("retry", ingested, "--stage", "describe").stdout.startswith("1 failure forgotten")
+    assert invoke("retry", ingested).stdout.startswith("2 failures forgotten")
+    assert invoke("retry", ingested).stdout == "no failures on record\n"
+    assert invoke("retry", ingested, "--stage", "mesh").stdout == "no failures of stage 'mesh' on record\n"
+
+
+# status
+
+
+def test_status_of_a_new_collection_says_what_to_do_next(invoke, empty: Path) -> None:
+    result = invoke("status", empty)
+    assert result.exit_code == 0
+    assert "go on with `partwise ingest`" in result.stdout
+    assert "Model: none yet" in result.stdout
+
+
+def test_status_of_an_ingested_collection_says_what_to_do_next(invoke, ingested: Path) -> None:
+    assert "go on with `partwise preprocess`" in invoke("status", ingested).stdout
+
+
+def test_status_shows_states_stages_and_model(invoke, refined: Path) -> None:
+    words = invoke("status", refined).stdout.split()
+    for stage in ("mesh", "describe", "evaluate", "refine"):
+        start = words.index(stage)
+        assert words[start : start + 5] == [stage, "│", "3", "│", "0"]
+    assert " ".join(words).endswith("Model: version 1")
+
+
+def test_status_lists_failures_on_stderr(invoke, ingested: Path) -> None:
+    _fail(ingested, "a.off", "mesh", "too flat")
+    assert invoke("status", ingested).stderr == "warning: a.off: mesh: too flat\n"
+
+
+def test_status_as_json(invoke, refined: Path) -> None:
+    document = json.loads(invoke("status", refined, "--json").stdout)
+    assert document["collection"] == "mugs"
+    assert dict(document["states"])["ready"] == 3
+    assert document["stages"][0] == {"stage": "mesh", "n_done": 3, "n_failed": 0}
+    assert (document["model_version"], document["failures"]) == (1, [])
+
+
+# gc and migrate
+
+
+def test_gc_says_what_it_swept(invoke, refined: Path) -> None:
+    result = invoke("gc", refined)
+    assert result.stdout == "0 replaced blocks (0.0 MB), 0 blocks and 0 unfinished writes of crashed runs swept\n"
+    assert invoke("gc", refined, "--older-than-h", "-1").exit_code == 2
+
+
+def test_migrate_says_that_it_is_done(invoke, empty: Path) -> None:
+    assert invoke("migrate", empty).stdout == f"{empty}: the catalog is up to date\n"
+
+
+def test_migrate_needs_a_workspace(invoke, tmp_path: Path) -> None:
+    assert isinstance(invoke("migrate", tmp_path).exception, ConfigError)
