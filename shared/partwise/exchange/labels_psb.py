@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Int
 
-from partwise.errors import LabelError
+from partwise.errors import FileFormatError, LabelError
 from partwise.exchange.label_files import read_label_text
 from partwise.exchange.named_labels import UNLABELLED, NamedLabels
 from partwise.io.atomic import write_atomically
+from partwise.io.text import parse_integers
 
 
 def read_psb_labels(path: Path | str, n_faces: int, data: bytes | None = None) -> NamedLabels:
@@ -71,7 +72,10 @@ def _face_ids(line: str, where: str, n_faces: int) -> Int[np.ndarray, " k"]:
     strange = next((token for token in tokens if not _is_number(token)), None)
     if strange is not None:
         raise LabelError(f"{where} must hold face ids but has {strange[:40]!r}; a name line is followed by one of ids")
-    ids = np.array([int(token) for token in tokens], dtype=np.int64)
+    try:
+        ids = parse_integers([token.encode() for token in tokens], "face ids")
+    except FileFormatError as error:
+        raise LabelError(f"{where}: {error}") from error
     if len(ids) and (int(ids.min()) < 1 or int(ids.max()) > n_faces):
         bad = int(ids.min()) if int(ids.min()) < 1 else int(ids.max())
         raise LabelError(f"{where} names face {bad} but ids run from 1 to {n_faces}; are the labels another mesh's?")

@@ -147,10 +147,10 @@ def _read_length(data: bytes, offset: int, dtype: str, element: PlyElement) -> t
     size = np.dtype(dtype).itemsize
     if offset + size > len(data):
         raise _truncated(element)
-    n = int(np.frombuffer(data, dtype, 1, offset)[0])
-    if n < 0:
+    n = np.frombuffer(data, dtype, 1, offset)[0]
+    if not 0 <= n < np.inf:  # a float may be NaN, which fails this too
         raise FileFormatError(f"a list of {element.name} must have a length ≥ 0 but has {n}; is the file damaged?")
-    return n, offset + size
+    return int(n), offset + size
 
 
 def _read_uniform(

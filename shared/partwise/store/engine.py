@@ -114,6 +114,7 @@ def _complaint(reason: str) -> str:
     remedies = {
         "disk is full": "has no room on its disk; nothing was written: free some space and run again",
         "No space left": "has no room on its disk; nothing was written: free some space and run again",
+        "disk I/O error": "cannot use its disk, which is full or failing; nothing was written: free some space",
         "database is locked": f"was locked by another process for {BUSY_TIMEOUT_S:g} s; run again when that has ended",
         "unable to open": "cannot be opened; is its folder there and may you write to it?",
         "readonly": "is read-only; may you write to the file and its folder?",

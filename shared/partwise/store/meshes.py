@@ -26,7 +26,7 @@ def read_mesh(arrays: ArrayStore, mesh: Mesh) -> TriMesh:
     NotFoundError : it is in neither place.
     StoreError : the store cannot be read, or holds another mesh than the record says.
     """
-    if mesh.kept_key is not None:
+    if mesh.kept_key is not None and (mesh.block_name is None or arrays.exists(mesh.kept_key)):
         found = _trimesh(_loaded(arrays.get_bytes(mesh.kept_key), mesh.kept_key))
     elif mesh.block_name is not None and mesh.row is not None:
         found = _trimesh(arrays.read_many(mesh.block_name, mesh.row, ("vertices", "faces")))
@@ -50,9 +50,9 @@ def keep_mesh(catalog: ShapeCatalog, arrays: ArrayStore, mesh: Mesh) -> None:
 
     A remesh cannot be repeated bit by bit, so a mesh that carries labels is part of what people made.
     """
-    if mesh.kept_key is not None:
-        return
     key = kept_mesh_key(mesh.mesh_hash)
+    if mesh.kept_key == key and arrays.exists(key):
+        return
     arrays.put_bytes(key, save(mesh_arrays(read_mesh(arrays, mesh))))
     catalog.keep_mesh(mesh.mesh_hash, key)
 

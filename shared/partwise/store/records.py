@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Integer
 
+from partwise.errors import ParameterError
+
 
 class ShapeState(StrEnum):
     """Where a shape stands, derived by one expression in `partwise.store.sql.state`; the first that holds.
@@ -78,11 +80,23 @@ class Person:
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """A source to ingest: its key within the collection (a relative path), its content hash, its suffix (".off")."""
+    """A source to ingest: its key within the collection (a relative path), its content hash, its suffix (".off").
+
+    Raises
+    ------
+    ParameterError : a key that is no plain relative path: files are written under it when labels are exported.
+    """
 
     source_key: str
     source_hash: str
     source_suffix: str
+
+    def __post_init__(self) -> None:
+        segments = self.source_key.split("/")
+        if not self.source_key.isprintable() or "\\" in self.source_key or {"", ".", ".."} & set(segments):
+            raise ParameterError(
+                f"a source key must be a relative path of plain names but is {self.source_key!r}; rename the file"
+            )
 
 
 @dataclass(frozen=True, slots=True)

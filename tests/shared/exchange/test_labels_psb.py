@@ -52,6 +52,8 @@ def test_a_name_at_the_end_lists_no_faces():
         ("seat\n1 7\n", "names face 7"),
         ("seat\n1 -2\n", "names face -2"),
         ("seat\n1 2 1\n", "lists face 1 twice"),
+        (f"seat\n{2**64}\n", "whole numbers"),
+        (f"seat\n{'9' * 5000}\n", "whole numbers"),
         ("seat\n1 2\nback\n3 2\n", "line 4 lists face 2 as 'back' but it is 'seat' already"),
         ("seat\n1 2\n3 4\n", "line 3 must be a part name but is '3 4'"),
         ("seat\nback\n1 2\n", "line 2 must hold face ids but has 'back'"),

@@ -52,6 +52,14 @@ def test_a_kept_mesh_outlives_its_block(catalog: SqlCatalog, store: ZarrArraySto
     assert read_mesh(store, kept).content_hash() == _MESH.content_hash()
 
 
+def test_a_lost_kept_mesh_is_kept_again_from_its_block(catalog: SqlCatalog, store: ZarrArrayStore) -> None:
+    mesh = _published(catalog, store)
+    keep_mesh(catalog, store, mesh)
+    store.delete(kept_mesh_key(mesh.mesh_hash))
+    keep_mesh(catalog, store, catalog.mesh(mesh.shape_id, mesh.mesh_hash))
+    assert store.exists(kept_mesh_key(mesh.mesh_hash))
+
+
 def test_a_mesh_stored_nowhere_is_not_found(catalog: SqlCatalog, store: ZarrArrayStore) -> None:
     gone = dataclasses.replace(_published(catalog, store), block_name=None, row=None)
     with pytest.raises(NotFoundError, match="preprocess"):
