@@ -29,7 +29,16 @@ class DescribeTiming:
 
 
 def time_descriptions(files: Sequence[Path]) -> Iterator[DescribeTiming]:
-    """Describes each file after one warm-up shape, which compiles the kernels and opens the renderer."""
+    """Describes each file after one warm-up shape, which compiles the kernels and opens the renderer.
+
+    Every file is read once before anything is timed, so that a wrong one is told of at once.
+
+    Raises
+    ------
+    FileFormatError : a file is no mesh.
+    """
+    for file in files:
+        read_mesh(file)
     with Describer(DescribeParameters()) as describer:
         describer.describe(simulate_shape("mugs", 0, "warm-up", n_faces=WARM_UP_FACES).mesh)
         for file in files:

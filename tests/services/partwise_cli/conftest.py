@@ -40,9 +40,11 @@ def run(tmp_path: Path) -> Run:
     """Runs the true command in a process of its own, in `tmp_path`, through `main`."""
     executable = Path(sys.executable).with_name("partwise")
 
-    def run(*args: object, **options: object) -> "subprocess.CompletedProcess[str]":
+    def run(*args: object, timeout_s: float = 120, **options: Any) -> "subprocess.CompletedProcess[str]":
         command = [str(executable), *(str(arg) for arg in args)]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, **options)
+        return subprocess.run(
+            command, cwd=tmp_path, capture_output=True, text=True, timeout=timeout_s, check=False, **options
+        )
 
     return run
 

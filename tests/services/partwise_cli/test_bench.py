@@ -1,0 +1,134 @@
+"""bench: core-seconds of describing, and leave one out, on small things and without Ray."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from partwise.errors import NotEnoughDataError, NotFoundError, ParameterError
+from partwise.io.write import write_mesh
+from partwise.learning.recipe import Recipe
+from partwise.mesh import TriMesh
+from partwise.simulate.collection import simulate_shape
+from partwise.store.records import RevisionKind
+from partwise.testing.meshes import subdivided
+from partwise.testing.workspaces import ingest, publish_features, publish_meshes
+from partwise.workspace.labelling import commit_labels
+from partwise.workspace.workspace import init_collection, open_workspace
+from partwise_cli.bench import describing
+from partwise_cli.bench.leave_one_out import (
+    COLLECTION,
+    HeldOut,
+    evenly_spaced,
+    leave_one_out,
+    part_names_of,
+    prepare,
+    summarise,
+)
+
+
+def test_describing_is_timed_file_by_file(invoke, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(describing, "WARM_UP_FACES", 1000)
+    write_mesh(simulate_shape("mugs", 0, "mug", n_faces=1000).mesh, tmp_path / "mug.off")
+    result = invoke("bench", "describe", tmp_path / "mug.off", tmp_path / "mug.off", "--json")
+    lines = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [line["file"] for line in lines] == [str(tmp_path / "mug.off")] * 2
+    assert lines[0]["core_s"]["total"] > 0
+    assert {"shape_context", "spin_image", "shape_diameter", "light_field", "total"} <= set(lines[0]["core_s"])
+    assert lines[0]["peak_mb"] > 0
+
+
+@pytest.mark.parametrize(
+    ("n", "limit", "chosen"),
+    [(20, 4, [0, 6, 13, 19]), (5, None, [0, 1, 2, 3, 4]), (3, 9, [0, 1, 2]), (7, 1, [0])],
+)
+def test_held_out_shapes_are_evenly_spaced(n: int, limit: int | None, chosen: list[int]) -> None:
+    assert evenly_spaced(n, limit) == chosen
+
+
+def test_a_summary_has_the_means() -> None:
+    results = [
+        HeldOut("a", 4, 0.5, 0.6, 0.7, 0.8, 1.0, 10.0),
+        HeldOut("b", 4, 0.7, 0.8, 0.9, 1.0, 1.0, 20.0),
+    ]
+    summary = summarise(results, "Airplane", "paper", 20)
+    assert (summary.n_held_out, summary.n_shapes) == (2, 20)
+    assert (summary.accuracy_raw, summary.accuracy_refined) == (0.6, 0.7)
+    assert (summary.accuracy_raw_by_area, summary.accuracy_refined_by_area) == (0.8, 0.9)
+    assert summary.train_s == 15.0
+
+
+def test_part_names_are_those_of_all_files(tmp_path: Path, tetrahedron: TriMesh) -> None:
+    for name, part in (("1", "wing"), ("2", "body"), ("3", None)):
+        write_mesh(tetrahedron, tmp_path / f"{name}.off")
+        if part:
+            (tmp_path / f"{name}_labels.txt").write_text(f"{part}\n1 2 3 4\n")
+    assert part_names_of(tmp_path) == ["body", "wing"]
+
+
+def test_a_missing_folder_makes_no_workspace(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match="missing"):
+        prepare(tmp_path / "missing", tmp_path / "ws", lambda run: None)
+    assert not (tmp_path / "ws").exists()
+
+
+def test_a_folder_without_labels_makes_no_workspace(tmp_path: Path, tetrahedron: TriMesh) -> None:
+    write_mesh(tetrahedron, tmp_path / "in" / "1.off")
+    with pytest.raises(NotEnoughDataError, match=r"<id>_labels\.txt"):
+        prepare(tmp_path / "in", tmp_path / "ws", lambda run: None)
+    assert not (tmp_path / "ws").exists()
+
+
+def test_a_recipe_that_cannot_be_is_refused_before_any_work(invoke, tmp_path: Path) -> None:
+    result = invoke("bench", "loo", tmp_path, "--category", "x", "--iterations", "7")
+    assert isinstance(result.exception, ParameterError)
+
+
+@pytest.fixture
+def labelled(tmp_path: Path, tetrahedron: TriMesh) -> Path:
+    """Four labelled shapes of 64 faces."""
+    mesh = subdivided(subdivided(tetrahedron))
+    init_collection(tmp_path / "ws", COLLECTION, ["body", "wing"], {})
+    with open_workspace(tmp_path / "ws") as workspace:
+        collection = workspace.catalog.get_collection(COLLECTION)
+        meshes = {f"{i}.off": TriMesh(mesh.vertices * (i + 1.0), mesh.faces) for i in range(4)}
+        ids = ingest(workspace, collection, meshes)
+        publish_meshes(workspace, {ids[key]: mesh for key, mesh in meshes.items()})
+        publish_features(workspace, list(ids.values()), np.random.default_rng(0))
+        labels = np.where(np.arange(64) < 32, 1, 2).astype(np.uint16)
+        for shape_id in ids.values():
+            commit_labels(
+                workspace, collection, workspace.catalog.shape(shape_id), labels, RevisionKind.IMPORTED, "benchmark"
+            )
+    return tmp_path / "ws"
+
+
+def test_each_held_out_shape_is_judged_by_a_model_of_the_others(labelled: Path) -> None:
+    told: list[tuple[int, int, str]] = []
+    with open_workspace(labelled) as workspace:
+        recipe = Recipe(n_iterations=5, batch_size=16)
+        results = list(leave_one_out(workspace, recipe, 2, lambda done, total, name: told.append((done, total, name))))
+    assert [result.shape for result in results] == ["0.off", "3.off"]
+    assert all(result.n_faces == 64 for result in results)
+    assert all(0 <= value <= 1 for r in results for value in (r.accuracy_raw, r.accuracy_refined_by_area))
+    assert {name for _, _, name in told} == {"0.off", "3.off"}
+
+
+def test_leave_one_out_as_json(invoke, labelled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("partwise_cli.bench.leave_one_out.prepare", lambda folder, path, on_run: 4)
+    arguments = ("--category", "x", "--limit", "1", "--iterations", "5", "--workspace", labelled)
+    result = invoke("bench", "loo", tmp_path, *arguments, "--json")
+    held_out, summary = (json.loads(line) for line in result.stdout.splitlines())
+    names = ("accuracy_raw", "accuracy_refined", "accuracy_raw_by_area", "accuracy_refined_by_area", "train_s")
+    assert held_out["shape"] == "0.off"
+    assert (summary["category"], summary["preset"], summary["n_held_out"], summary["n_shapes"]) == ("x", "paper", 1, 4)
+    assert all(summary[name] == pytest.approx(held_out[name], abs=0.01) for name in names)
+
+
+def test_leave_one_out_as_a_table(invoke, labelled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("partwise_cli.bench.leave_one_out.prepare", lambda folder, path, on_run: 4)
+    arguments = ("--category", "x", "--limit", "1", "--iterations", "5", "--workspace", labelled)
+    result = invoke("bench", "loo", tmp_path, *arguments)
+    assert "Leave one out: x, paper" in result.stdout
+    assert [line.split()[1] for line in result.stdout.splitlines() if line.startswith("│")] == ["0.off", "mean"]
