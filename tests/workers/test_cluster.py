@@ -1,8 +1,11 @@
 """How many actors with how many threads, whatever the number of shapes and nodes."""
 
+import socket
+from collections.abc import Iterator
+
 import pytest
 
-from partwise_workers.cluster import THREAD_VARIABLES, Cores, Crew, cores, thread_environment
+from partwise_workers.cluster import THREAD_VARIABLES, Cores, Crew, cores, require_listener, thread_environment
 
 WORKSTATION = Cores(total=16, largest_node=16, smallest_node=16)
 CLUSTER = Cores(total=64, largest_node=8, smallest_node=4)
@@ -35,6 +38,30 @@ def test_without_a_shape_there_is_still_one_actor() -> None:
 @pytest.mark.parametrize("variable", THREAD_VARIABLES)
 def test_every_numerical_library_is_told_its_threads(variable: str) -> None:
     assert thread_environment(3)[variable] == "3"
+
+
+@pytest.fixture
+def listener() -> Iterator[socket.socket]:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield server
+
+
+@pytest.mark.parametrize("prefix", ["", "ray://"])
+def test_an_address_where_somebody_listens_is_tried(listener: socket.socket, prefix: str) -> None:
+    require_listener(f"{prefix}127.0.0.1:{listener.getsockname()[1]}")
+
+
+@pytest.mark.parametrize("prefix", ["", "ray://"])
+def test_an_address_where_nobody_listens_is_refused_at_once(listener: socket.socket, prefix: str) -> None:
+    port = listener.getsockname()[1]
+    listener.close()
+    with pytest.raises(OSError, match="refused"):
+        require_listener(f"{prefix}127.0.0.1:{port}")
+
+
+@pytest.mark.parametrize("address", ["auto", "local"])
+def test_rays_own_words_for_addresses_are_left_to_it(address: str) -> None:
+    require_listener(address)
 
 
 @pytest.mark.usefixtures("local_ray")

@@ -312,7 +312,7 @@ def test_an_interrupted_run_keeps_what_is_finished_and_goes_on(
         for _ in events(path, driver):
             # by the third, the driver has taken in at least one of two actors' first shapes
             if n_described(path) >= 3:
-                driver.process.send_signal(signal.SIGINT)
+                os.killpg(driver.process.pid, signal.SIGINT)  # as a terminal does: to Ray's processes too
                 break
         assert driver.process.wait() == INTERRUPTED
     assert visible_blocks(path) != set()

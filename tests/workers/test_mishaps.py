@@ -2,6 +2,7 @@
 
 import signal
 from collections.abc import Callable
+from typing import NoReturn
 
 import psutil
 import pytest
@@ -46,7 +47,7 @@ def once(act: Callable[[], object]) -> Callable[[], None]:
     return call
 
 
-def raise_(error: BaseException) -> None:
+def raise_(error: BaseException) -> NoReturn:
     raise error
 
 
@@ -66,6 +67,14 @@ def test_on_an_interrupt_what_is_finished_is_published(make_bench) -> None:
     with pytest.raises(KeyboardInterrupt):
         bench.run(when(2, lambda: raise_(KeyboardInterrupt())))
     assert len(bench.done("second")) == 2
+
+
+def test_an_interrupt_within_publishing_leaves_nothing_on_record_without_its_input(make_bench) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1)
+    with pytest.raises(KeyboardInterrupt):
+        bench.run(also_publish=lambda shape_id, result, row: raise_(KeyboardInterrupt()))
+    assert bench.workspace.catalog.visible_blocks() == []
+    assert len(bench.workspace.arrays.staged_keys()) == 8
 
 
 def test_a_packer_that_dies_is_replaced(make_bench, caplog) -> None:

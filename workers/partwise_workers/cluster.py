@@ -2,6 +2,7 @@
 
 import logging
 import os
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -22,6 +23,8 @@ THREAD_VARIABLES = (
 )
 
 LOCAL_OBJECT_STORE_BYTES = 128 * 1024 * 1024  # ids and small summaries travel, never arrays
+
+CONNECT_S = 10.0
 
 # Actors have an environment of their own, so that Ray would start these general workers for nothing.
 NO_SPARE_WORKERS = {"enable_worker_prestart": False, "prestart_worker_first_driver": False}
@@ -46,6 +49,7 @@ def connected(n_cpus: int | None = None) -> Iterator[None]:
     address = os.environ.get("RAY_ADDRESS")
     try:
         if address:
+            require_listener(address)
             ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         else:
             _start_local(n_cpus or os.cpu_count() or 1)
@@ -57,6 +61,13 @@ def connected(n_cpus: int | None = None) -> Iterator[None]:
         yield
     finally:
         ray.shutdown()
+
+
+def require_listener(address: str) -> None:
+    """Raises OSError at once where nobody listens at `host:port` or `ray://host:port`: Ray itself tries for minutes."""
+    host, colon, port = address.rpartition("//")[2].rpartition(":")
+    if colon and port.isdecimal():
+        socket.create_connection((host.strip("[]"), int(port)), timeout=CONNECT_S).close()
 
 
 def _start_local(n_cpus: int) -> None:

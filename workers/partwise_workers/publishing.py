@@ -102,6 +102,7 @@ class Publisher:
         self._packing: dict[Reference, _Packing] = {}
         self._arrived: set[Reference] = set()
         self._packer: Actor | None = None
+        self._is_in_order = True
 
     @property
     def has_room(self) -> bool:
@@ -134,7 +135,12 @@ class Publisher:
             self._take(first)
 
     def flush(self) -> None:
-        """Packs and publishes all that was added."""
+        """Packs and publishes all that was added.
+
+        Nothing, if an interrupt fell into publishing: what comes after must not be on record without what came before.
+        """
+        if not self._is_in_order:
+            return
         self._pack_gathered()
         while self._packing:
             self.collect(ray.wait(self.references(), num_returns=1)[0])
@@ -163,6 +169,7 @@ class Publisher:
 
     def _take(self, reference: Reference) -> None:
         packing = self._packing.pop(reference)
+        self._is_in_order = False
         try:
             packed: Packed = ray.get(reference)
         except RayError as error:
@@ -170,6 +177,7 @@ class Publisher:
             self._pack_again(packing, error)
         else:
             self._publish(packing, packed)
+        self._is_in_order = True
 
     def _pack_again(self, packing: _Packing, error: RayError) -> None:
         logger.warning("the packer died", extra={"stage": packing.stage, "why": first_line(error)})
