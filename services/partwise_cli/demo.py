@@ -15,6 +15,7 @@ from partwise.workspace.ingest import ingest_folder
 from partwise.workspace.labelling import commit_labels, import_labels
 from partwise.workspace.queue import all_ranked
 from partwise.workspace.segmentations import Segmentation, reference_labels
+from partwise.workspace.shapes import shape_mesh
 from partwise.workspace.workspace import INITIAL_CONFIG, Workspace, init_workspace, open_workspace
 from partwise_cli.pictures import write_worst_shapes
 from partwise_cli.simulated import SimulationRequest, write_collection
@@ -109,7 +110,7 @@ def _confirm_first_shapes(workspace: Workspace, collection: Collection, request:
     firsts = select_first_shapes(workspace, collection, request.n_confirmed, 1, request.seed)
     shapes = workspace.catalog.shapes_by_id([first.shape_id for first in firsts])
     for shape in shapes.values():
-        truth = reference_labels(workspace, shape)
+        truth = reference_labels(workspace, shape_mesh(workspace, shape))
         if truth is not None:
             commit_labels(workspace, collection, shape, truth, RevisionKind.HUMAN, ANNOTATOR)
     return set(shapes)

@@ -4,7 +4,7 @@ import json
 import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +16,7 @@ import trimesh
 
 from partwise.errors import NotEnoughDataError
 from partwise.mesh import TriMesh
-from partwise.store.block_kinds import FEATURES, MESH, N_BINS, N_LIGHT_FIELD
+from partwise.store.block_kinds import MESH, N_BINS, N_LIGHT_FIELD
 from partwise.store.records import (
     Collection,
     Model,
@@ -31,6 +31,7 @@ from partwise.workspace.workspace import Workspace, init_workspace, open_workspa
 from partwise_workers import training
 from partwise_workers.errors import WorkerError
 from partwise_workers.model_store import ModelReference, read_model
+from partwise_workers.plan import chain_keys, description_stages
 from partwise_workers.training import _Trainer, labelled_shapes, recipe_of, train_collection
 
 N_SHAPES = 4
@@ -59,22 +60,42 @@ def described_balls(path: Path) -> Iterator[tuple[Workspace, Collection]]:
 
 
 def publish(workspace: Workspace, ids: list[int]) -> None:
+    """Meshes and features of the shapes, as a run of the configured stages would leave them."""
     meshes = [{"vertices": m.vertices.astype(np.float32), "faces": m.faces.astype(np.uint32)} for m in MESHES]
-    block = workspace.arrays.write_block(MESH, meshes)
-    workspace.catalog.publish_block(
-        NewBlock(block.name, "mesh", block.n_shapes, block.n_bytes, block.checksum),
-        [NewStageRun(shape_id, "mesh", f"m{shape_id}", row) for row, shape_id in enumerate(ids)],
-        meshes=[
-            NewMesh(shape_id, MESHES[row].content_hash(), MESHES[row].n_vertices, MESHES[row].n_faces, row)
+    hashes = [mesh.content_hash() for mesh in MESHES]
+    publish_stage(
+        workspace,
+        ids,
+        0,
+        meshes,
+        [
+            NewMesh(shape_id, hashes[row], MESHES[row].n_vertices, MESHES[row].n_faces, row)
             for row, shape_id in enumerate(ids)
         ],
     )
     rng = np.random.default_rng(0)
-    block = workspace.arrays.write_block(FEATURES, [features(rng) for _ in ids])
-    workspace.catalog.publish_block(
-        NewBlock(block.name, "features", block.n_shapes, block.n_bytes, block.checksum),
-        [NewStageRun(shape_id, "describe", f"d{shape_id}", row) for row, shape_id in enumerate(ids)],
-    )
+    publish_stage(workspace, ids, 1, [features(rng) for _ in ids])
+
+
+def publish_stage(
+    workspace: Workspace, ids: list[int], position: int, arrays: list[dict[str, np.ndarray]], meshes: Sequence = ()
+) -> None:
+    """One block of what the stage at this position of the chain made."""
+    stages = description_stages(workspace.config)
+    stage, shapes = stages[position], workspace.catalog.shapes_by_id(ids)
+    block = workspace.arrays.write_block(stage.block_kind, arrays)
+    runs = [
+        NewStageRun(
+            shape_id,
+            stage.name,
+            chain_keys(shapes[shape_id], stages)[position],
+            row,
+            summary={"mesh_hash": MESHES[row].content_hash()},
+        )
+        for row, shape_id in enumerate(ids)
+    ]
+    new = NewBlock(block.name, stage.block_kind.name, block.n_shapes, block.n_bytes, block.checksum)
+    workspace.catalog.publish_block(new, runs, meshes=meshes)
 
 
 def features(rng: np.random.Generator) -> dict[str, np.ndarray]:
@@ -124,11 +145,25 @@ def test_labels_of_another_mesh_are_left_out(described) -> None:
     workspace, collection = described
     label(workspace, collection, 0, LABELS)
     shape = workspace.catalog.shape_by_key(collection.id, "0.off")
-    block = NewBlock("blocks/mesh/other", "mesh", 1, 1, "0" * 64)
+    other = {"vertices": MESHES[1].vertices.astype(np.float32), "faces": MESHES[1].faces.astype(np.uint32)}
+    new = NewMesh(shape.id, MESHES[1].content_hash(), MESHES[1].n_vertices, MESHES[1].n_faces, 0)
+    key = chain_keys(shape, description_stages(workspace.config))[0]
+    block = workspace.arrays.write_block(MESH, [other])
     workspace.catalog.publish_block(
-        block, [NewStageRun(shape.id, "mesh", "other", 0)], meshes=[NewMesh(shape.id, "f" * 64, 5, 6, 0)]
+        NewBlock(block.name, "mesh", block.n_shapes, block.n_bytes, block.checksum),
+        [NewStageRun(shape.id, "mesh", key, 0, summary={"mesh_hash": new.mesh_hash})],
+        meshes=[new],
     )
     assert list(labelled_shapes(workspace, collection)) == []
+
+
+def test_shapes_described_under_other_parameters_are_left_out(described) -> None:
+    workspace, collection = described
+    label(workspace, collection, 0, LABELS)
+    mesh = replace(workspace.config.mesh, max_faces=1000)
+    other = replace(workspace, config=replace(workspace.config, mesh=mesh))
+    assert len(list(labelled_shapes(workspace, collection))) == 1
+    assert list(labelled_shapes(other, collection)) == []
 
 
 def test_the_configurations_recipe_is_the_one_trained(described) -> None:

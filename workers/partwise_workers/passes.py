@@ -10,15 +10,13 @@ from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected
 from partwise_workers.model_store import ModelReference
-from partwise_workers.plan import plan_tasks
+from partwise_workers.plan import description_stages, plan_tasks
 from partwise_workers.publishing import AlsoPublish, Published, nothing_else
 from partwise_workers.runner import StageRunner
 from partwise_workers.stage import Stage
 from partwise_workers.stages import evaluate as evaluate_stage
 from partwise_workers.stages import mesh as mesh_stage
-from partwise_workers.stages.describe import DescribeStage
 from partwise_workers.stages.evaluate import EvaluateStage
-from partwise_workers.stages.mesh import MeshStage
 from partwise_workers.stages.refine import RefineStage
 from partwise_workers.staging import sweep_staging
 from partwise_workers.tasks import StagedResult
@@ -32,7 +30,7 @@ def preprocess(workspace: Workspace, collection: Collection, on_progress: OnRunP
     StoreError : a store is full or cannot be reached; what is finished is kept for the next run. So do all passes.
     WorkerError : Ray or its processes cannot be started. So do all passes.
     """
-    return _run(workspace, collection, _description_stages(workspace), (), on_progress, _meshes)
+    return _run(workspace, collection, description_stages(workspace.config), (), on_progress, _meshes)
 
 
 def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
@@ -50,7 +48,7 @@ def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunPro
             scores=tuple(NewScore(shape_id, model.id, name, result.summary[name]) for name in evaluate_stage.SCORES)
         )
 
-    return _run(workspace, collection, (stage,), _description_stages(workspace), on_progress, scores)
+    return _run(workspace, collection, (stage,), description_stages(workspace.config), on_progress, scores)
 
 
 def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
@@ -62,7 +60,7 @@ def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgr
     """
     model = newest_model(workspace, collection)
     stage = RefineStage(refinement_parameters(workspace, model), model.version)
-    earlier = (*_description_stages(workspace), EvaluateStage(ModelReference.of(model)))
+    earlier = (*description_stages(workspace.config), EvaluateStage(ModelReference.of(model)))
     return _run(workspace, collection, (stage,), earlier, on_progress, nothing_else)
 
 
@@ -80,15 +78,11 @@ def refinement_parameters(workspace: Workspace, model: Model) -> RefinementParam
     return workspace.config.refine if tuned is None else replace(workspace.config.refine, smoothness=tuned)
 
 
-def _description_stages(workspace: Workspace) -> tuple[Stage, Stage]:
-    return MeshStage(workspace.config.mesh), DescribeStage(workspace.config.describe)
-
-
 def _meshes(shape_id: int, result: StagedResult, row: int) -> Published:
     if result.stage != mesh_stage.NAME:
         return Published()
     made = result.summary
-    return Published(meshes=(NewMesh(shape_id, made["hash"], made["n_vertices"], made["n_faces"], row),))
+    return Published(meshes=(NewMesh(shape_id, made["mesh_hash"], made["n_vertices"], made["n_faces"], row),))
 
 
 def _run(

@@ -2,11 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from partwise.config import Config
 from partwise.store.records import Collection, Shape, StageRun
 from partwise.workspace.ingest import source_object
 from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
 from partwise_workers.stage import Stage, stage_key
+from partwise_workers.stages.describe import DescribeStage
+from partwise_workers.stages.mesh import MeshStage
 from partwise_workers.tasks import BlockRow, ShapeTask, block_row
 
 
@@ -30,6 +33,11 @@ def plan_tasks(
             task = _plan(shape, chain, len(earlier), done_here, failed_here)
             if task is not None:
                 yield task
+
+
+def description_stages(config: Config) -> tuple[Stage, Stage]:
+    """What turns an ingested file into descriptors, as configured."""
+    return MeshStage(config.mesh), DescribeStage(config.describe)
 
 
 def chain_keys(shape: Shape, chain: Sequence[Stage]) -> list[str]:

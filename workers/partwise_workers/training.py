@@ -19,12 +19,12 @@ from partwise.mesh import TriMesh
 from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.array_store import ArrayStore
 from partwise.store.open import open_array_store
-from partwise.store.records import Collection, Model, NewModel
-from partwise.workspace.segmentations import DESCRIBE, MESH
+from partwise.store.records import Collection, LabelRevision, Model, NewModel, StageRun
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected, cores
 from partwise_workers.errors import WorkerError
 from partwise_workers.model_store import write_model
+from partwise_workers.plan import chain_keys, description_stages
 from partwise_workers.pool import first_line, raise_own
 from partwise_workers.tasks import BlockRow, block_row
 
@@ -173,14 +173,35 @@ def _wait(
 
 
 def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[TrainingShape]:
-    """Every shape whose newest human or imported labels belong to the mesh that is described, by id."""
+    """Every shape whose newest human or imported labels can be learned from, by id.
+
+    They must belong to the mesh that is described, and to the present schema version (older ones wait for someone to
+    look at them). The description must be as the configuration says, so that no model mixes two kinds.
+    """
     catalog, after = workspace.catalog, 0
+    stages = description_stages(workspace.config)
     while page := catalog.labelled_shapes(collection.id, after=after):
         ids = [revision.shape_id for revision in page]
-        meshes, mesh_runs, runs = catalog.meshes(ids), catalog.stage_runs(ids, MESH), catalog.stage_runs(ids, DESCRIBE)
+        shapes = catalog.shapes_by_id(ids)
+        runs = [catalog.stage_runs(ids, stage.name) for stage in stages]
         for revision in page:
             shape_id = revision.shape_id
-            mesh, features = block_row(mesh_runs.get(shape_id)), block_row(runs.get(shape_id))
-            if mesh and features and meshes[shape_id].mesh_hash == revision.mesh_hash:
-                yield TrainingShape(shape_id, revision.id, mesh, features, catalog.labels(revision.id))
+            places = _places([each.get(shape_id) for each in runs], chain_keys(shapes[shape_id], stages), revision)
+            if places is not None and revision.schema_version == collection.schema_version:
+                yield TrainingShape(shape_id, revision.id, *places, catalog.labels(revision.id))
         after = ids[-1]
+
+
+def _places(
+    runs: Sequence[StageRun | None], keys: Sequence[str], revision: LabelRevision
+) -> tuple[BlockRow, BlockRow] | None:
+    """Where mesh and features are, if both are present and of the mesh that the labels belong to."""
+    present = [
+        place
+        for run, key in zip(runs, keys, strict=True)
+        if run is not None
+        and run.key == key
+        and run.summary["mesh_hash"] == revision.mesh_hash
+        and (place := block_row(run)) is not None
+    ]
+    return (present[0], present[1]) if len(present) == len(keys) else None

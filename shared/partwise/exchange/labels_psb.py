@@ -7,9 +7,10 @@ from jaxtyping import Int
 
 from partwise.errors import FileFormatError, LabelError
 from partwise.exchange.label_files import read_label_text
-from partwise.exchange.named_labels import UNLABELLED, NamedLabels
+from partwise.exchange.named_labels import NamedLabels
 from partwise.io.atomic import write_atomically
 from partwise.io.text import parse_integers
+from partwise.unlabelled import NO_CLASS
 
 
 def read_psb_labels(path: Path | str, n_faces: int, data: bytes | None = None) -> NamedLabels:
@@ -23,7 +24,7 @@ def read_psb_labels(path: Path | str, n_faces: int, data: bytes | None = None) -
     LabelError : a face id outside 1 … n_faces, a face listed twice, a line that is neither; says the line.
     """
     text = read_label_text(path, data)
-    indices = np.full(n_faces, UNLABELLED, dtype=np.int64)
+    indices = np.full(n_faces, NO_CLASS, dtype=np.int64)
     names: list[str] = []
     lines = iter(enumerate(text.splitlines(), start=1))
     for number, line in lines:
@@ -36,7 +37,7 @@ def read_psb_labels(path: Path | str, n_faces: int, data: bytes | None = None) -
             )
         number, ids_line = next(lines, (number, ""))
         faces = _face_ids(ids_line, f"{path}: line {number}", n_faces)
-        taken = indices[faces] != UNLABELLED
+        taken = indices[faces] != NO_CLASS
         if taken.any():
             face = int(faces[np.argmax(taken)])
             raise LabelError(

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Int
 
 from partwise.errors import LabelError
-
-UNLABELLED = -1
+from partwise.unlabelled import NO_CLASS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,8 +36,8 @@ class NamedLabels:
                 f"labels must be (m,) whole numbers but are {self.indices.shape} {self.indices.dtype}; one a face"
             )
         indices = self.indices.astype(np.int64)
-        if len(indices) and (int(indices.min()) < UNLABELLED or int(indices.max()) >= len(self.part_names)):
-            bad = int(indices.min()) if int(indices.min()) < UNLABELLED else int(indices.max())
+        if len(indices) and (int(indices.min()) < NO_CLASS or int(indices.max()) >= len(self.part_names)):
+            bad = int(indices.min()) if int(indices.min()) < NO_CLASS else int(indices.max())
             raise LabelError(f"labels must be −1 or name one of {len(self.part_names)} parts but one is {bad}")
         indices.flags.writeable = False
         object.__setattr__(self, "indices", indices)
@@ -61,7 +60,7 @@ def to_part_ids(labels: NamedLabels, part_ids: Mapping[str, int], source: str) -
             raise LabelError(
                 f"{source}: part {name!r} must be in the schema {sorted(part_ids)}; {_advice(name, part_ids)}"
             )
-    id_of_index = np.array([*(part_ids[name] for name in labels.part_names), UNLABELLED], dtype=np.int64)
+    id_of_index = np.array([*(part_ids[name] for name in labels.part_names), NO_CLASS], dtype=np.int64)
     return id_of_index[labels.indices]  # −1 picks the last, which is −1
 
 

@@ -9,11 +9,11 @@ from jaxtyping import Int, UInt8
 
 from partwise.errors import FileFormatError, LabelError
 from partwise.exchange.label_files import read_label_bytes
-from partwise.exchange.named_labels import UNLABELLED
 from partwise.io.atomic import write_atomically
 from partwise.io.ply import format_ply, parse_ply_face_property
 from partwise.io.read import read_mesh
 from partwise.mesh import TriMesh
+from partwise.unlabelled import NO_CLASS
 
 Rgb = tuple[int, int, int]
 UNLABELLED_COLOUR: Rgb = (160, 160, 160)
@@ -78,7 +78,7 @@ def colour_faces(
     labels: Int[np.ndarray, " m"], colours: Mapping[int, Rgb], unlabelled: Rgb = UNLABELLED_COLOUR
 ) -> UInt8[np.ndarray, "m 3"]:
     """Colour of each face, (m, 3) uint8 RGB. LabelError as `write_ply_labels`."""
-    palette = {UNLABELLED: unlabelled, **colours}
+    palette = {NO_CLASS: unlabelled, **colours}
     distinct, position = np.unique(labels, return_inverse=True)
     for label in distinct.tolist():
         if label not in palette:

@@ -46,6 +46,11 @@ class Describer:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    @property
+    def renderer(self) -> str:
+        """Which depth renderer the probe chose: gl or raycast."""
+        return self._renderer.name
+
     def close(self) -> None:
         self._renderer.close()
 

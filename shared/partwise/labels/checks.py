@@ -4,7 +4,8 @@ import numpy as np
 from jaxtyping import Integer, UInt16
 
 from partwise.errors import LabelError
-from partwise.labels.schema import MAX_PART_ID, UNLABELLED, PartSchema
+from partwise.labels.schema import MAX_PART_ID, PartSchema
+from partwise.unlabelled import NO_PART_ID
 
 
 def checked_labels(labels: Integer[np.ndarray, " m"], n_faces: int, schema: PartSchema) -> UInt16[np.ndarray, " m"]:
@@ -22,7 +23,7 @@ def checked_labels(labels: Integer[np.ndarray, " m"], n_faces: int, schema: Part
             f"there must be one label per face but there are {len(labels)} labels for {n_faces} faces; "
             "do they belong to another mesh?"
         )
-    unknown = np.setdiff1d(labels, [UNLABELLED, *schema.ids])
+    unknown = np.setdiff1d(labels, [NO_PART_ID, *schema.ids])
     if len(unknown):
         face = int(np.flatnonzero(labels == unknown[0])[0])
         raise LabelError(

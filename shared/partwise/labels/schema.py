@@ -10,7 +10,6 @@ from difflib import get_close_matches
 
 from partwise.errors import LabelError
 
-UNLABELLED = 0
 MAX_PART_ID = 65_535  # labels are uint16
 _MAX_NAME = 64
 _COLOUR = re.compile(r"#[0-9A-Fa-f]{6}")

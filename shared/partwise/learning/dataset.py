@@ -10,10 +10,10 @@ import numpy as np
 from jaxtyping import Float32, Int64, UInt8, UInt16
 
 from partwise.errors import LabelError, NotEnoughDataError, ParameterError
+from partwise.unlabelled import NO_CLASS
 
 GRID_SIZE = 16
 GRID_BINS = GRID_SIZE * GRID_SIZE
-UNLABELLED = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,7 +143,7 @@ class FacePool:
             raise ParameterError(f"capacity must be at least 1 but is {capacity}; pass the recipe's n_draws")
         reservoir = _Reservoir(capacity)
         for shape in shapes:
-            _require_classes(shape.classes, len(part_ids), lowest=UNLABELLED)
+            _require_classes(shape.classes, len(part_ids), lowest=NO_CLASS)
             reservoir.offer(_labelled_columns(shape), rng)
         columns = reservoir.columns()
         if not columns:
@@ -163,10 +163,10 @@ def classes_of(labels: UInt16[np.ndarray, " n"], part_ids: tuple[int, ...]) -> I
     ------
     LabelError : a label is not among the parts.
     """
-    class_of_id = np.full(max([0, *part_ids, int(labels.max(initial=0))]) + 1, UNLABELLED, dtype=np.int64)
+    class_of_id = np.full(max([0, *part_ids, int(labels.max(initial=0))]) + 1, NO_CLASS, dtype=np.int64)
     class_of_id[list(part_ids)] = np.arange(len(part_ids))
     classes = class_of_id[labels]
-    strangers = np.unique(labels[(classes == UNLABELLED) & (labels != 0)])
+    strangers = np.unique(labels[(classes == NO_CLASS) & (labels != 0)])
     if len(strangers):
         raise LabelError(
             f"labels must be 0 or one of {part_ids} but contain {strangers[0]}; is the part in the schema?"
@@ -241,7 +241,7 @@ class _Reservoir:
 
 
 def _labelled_columns(shape: LabelledFaces) -> dict[str, np.ndarray]:
-    labelled = np.flatnonzero(shape.classes != UNLABELLED)
+    labelled = np.flatnonzero(shape.classes != NO_CLASS)
     columns = {"classes": shape.classes[labelled]}
     for branch, grids in shape.grids.items():
         columns[f"{branch}/codes"] = grids.codes[labelled]

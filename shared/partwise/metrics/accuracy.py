@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from partwise.errors import LabelError, NotEnoughDataError
-from partwise.exchange.named_labels import UNLABELLED
+from partwise.unlabelled import NO_CLASS
 
 
 def accuracy(predicted: Int[np.ndarray, " m"], truth: Int[np.ndarray, " m"]) -> float:
@@ -38,7 +38,7 @@ def weighted_accuracy(
 ) -> float:
     """Share of the weight of labelled faces that is right, in [0, 1]. Raises as `accuracy_by_area` does."""
     check_comparable(predicted, truth, weights)
-    counted = np.where(truth == UNLABELLED, 0.0, weights)
+    counted = np.where(truth == NO_CLASS, 0.0, weights)
     total = float(counted.sum())
     if not total > 0:
         raise NotEnoughDataError("accuracy needs faces with a true label and area but there are none; label some first")

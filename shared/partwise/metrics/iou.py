@@ -4,8 +4,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from partwise.errors import LabelError, NotEnoughDataError
-from partwise.exchange.named_labels import UNLABELLED
 from partwise.metrics.accuracy import check_comparable
+from partwise.unlabelled import NO_CLASS
 
 
 def part_iou(
@@ -25,14 +25,14 @@ def part_iou(
         (the truth may be −1, and so may predictions).
     """
     check_comparable(predicted, truth, weights)
-    known = np.append(part_ids, UNLABELLED)
+    known = np.append(part_ids, NO_CLASS)
     for name, labels in (("predicted", predicted), ("truth", truth)):
         strangers = np.setdiff1d(labels, known)
         if len(strangers):
             raise LabelError(
                 f"{name} labels must be among {part_ids.tolist()} but hold {int(strangers[0])}; other schema?"
             )
-    counted = np.where(truth == UNLABELLED, 0.0, weights)
+    counted = np.where(truth == NO_CLASS, 0.0, weights)
     is_predicted = predicted[None, :] == part_ids[:, None]
     is_true = truth[None, :] == part_ids[:, None]
     intersection = (is_predicted & is_true) @ counted

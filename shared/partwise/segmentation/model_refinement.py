@@ -14,6 +14,7 @@ from partwise.geometry.adjacency import EdgeAdjacency, edge_adjacency
 from partwise.geometry.dihedral import is_concave, normal_angles
 from partwise.geometry.faces import face_areas
 from partwise.mesh import TriMesh
+from partwise.metrics.accuracy import accuracy_by_area
 from partwise.segmentation.alpha_expansion import alpha_expansion
 from partwise.segmentation.energy import LabelProblem
 from partwise.segmentation.parameters import SMOOTHNESS_CANDIDATES, RefinementParameters, check_smoothness
@@ -119,7 +120,7 @@ def tune_smoothness(
     ordered = tuple(sorted(candidates))
     shapes = list(zip(problems, true_labels, areas, strict=True))
     reached = tuple(
-        float(np.mean([_share_right(problem.solve(smoothness), truth, area) for problem, truth, area in shapes]))
+        float(np.mean([accuracy_by_area(problem.solve(smoothness), truth, area) for problem, truth, area in shapes]))
         for smoothness in ordered
     )
     return SmoothnessChoice(ordered[int(np.argmax(reached))], ordered, reached)
@@ -156,15 +157,3 @@ def _check_probabilities(mesh: TriMesh, probabilities: np.ndarray) -> None:
         raise LabelError(
             f"probabilities must lie in [0, 1] but span {probabilities.min()} to {probabilities.max()}; logits?"
         )
-
-
-def _share_right(labels: np.ndarray, truth: np.ndarray, areas: np.ndarray) -> float:
-    if not labels.shape == truth.shape == areas.shape:
-        raise LabelError(
-            f"true labels and areas must be {labels.shape} but are {truth.shape} and {areas.shape}; another mesh's?"
-        )
-    labelled = np.where(truth >= 0, areas, 0.0)
-    total = float(labelled.sum())
-    if not total > 0:
-        raise NotEnoughDataError("tuning needs labelled area on every shape but one has none; leave that shape out")
-    return float(np.where(labels == truth, labelled, 0.0).sum() / total)

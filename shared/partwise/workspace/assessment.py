@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from partwise.geometry.faces import face_areas
-from partwise.labels.schema import UNLABELLED as NO_PART
 from partwise.metrics.accuracy import accuracy, accuracy_by_area
 from partwise.store.records import Collection, Shape
+from partwise.unlabelled import NO_CLASS, NO_PART_ID
 from partwise.workspace.segmentations import Segmentation, reference_labels, segmented_shapes
 from partwise.workspace.shapes import load_mesh
 from partwise.workspace.workspace import Workspace
@@ -26,10 +26,12 @@ def assess(workspace: Workspace, collection: Collection, segmentation: Segmentat
     """Every shape that has such labels and ground truth on the same mesh, by id."""
     assessed = []
     for segmented in segmented_shapes(workspace, collection, segmentation):
-        truth = reference_labels(workspace, segmented.shape)
-        if truth is None or len(truth) != len(segmented.labels) or not truth.any():
+        truth = reference_labels(workspace, segmented.mesh)
+        if truth is None or not truth.any():
             continue
-        labels, true_labels = (np.where(ids == NO_PART, -1, ids.astype(np.int64)) for ids in (segmented.labels, truth))
+        labels, true_labels = (
+            np.where(ids == NO_PART_ID, NO_CLASS, ids.astype(np.int64)) for ids in (segmented.labels, truth)
+        )
         areas = face_areas(load_mesh(workspace, segmented.mesh))
         assessed.append(
             ShapeAccuracy(segmented.shape, accuracy(labels, true_labels), accuracy_by_area(labels, true_labels, areas))

@@ -16,9 +16,9 @@ from partwise.errors import ConflictError, NotFoundError, StoreError
 from partwise.exchange.export_manifest import ExportManifest, ManifestFile, ManifestPart, ManifestShape, write_manifest
 from partwise.exchange.ply_labels import LabelledMesh, write_ply_labels
 from partwise.exchange.seg import write_seg
-from partwise.labels.schema import UNLABELLED as NO_PART
 from partwise.labels.schema import PartSchema
 from partwise.store.records import Collection
+from partwise.unlabelled import NO_CLASS, NO_PART_ID
 from partwise.workspace.choices import ExportFormat as ExportFormat
 from partwise.workspace.choices import Segmentation
 from partwise.workspace.segmentations import SegmentedShape, segmented_shapes
@@ -26,8 +26,6 @@ from partwise.workspace.shapes import load_mesh
 from partwise.workspace.workspace import Workspace
 
 MANIFEST = "manifest.json"
-UNLABELLED = -1
-"""What unlabelled faces get in exported files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +82,7 @@ def _write(
 ) -> ManifestShape:
     shape = segmented.shape
     labels = segmented.labels.astype(np.int64)
-    labels[labels == NO_PART] = UNLABELLED
+    labels[labels == NO_PART_ID] = NO_CLASS
     path = folder / relative
     if file_format is ExportFormat.SEG:
         write_seg(path, labels)

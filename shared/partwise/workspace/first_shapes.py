@@ -1,5 +1,6 @@
 """Embeds the collection and chooses the shapes to label first."""
 
+import hashlib
 from collections.abc import Iterator
 
 import numpy as np
@@ -8,7 +9,7 @@ from safetensors.numpy import save
 
 from partwise.errors import NotEnoughDataError
 from partwise.selection.clustering import first_shapes
-from partwise.selection.embedding import fit_embedding
+from partwise.selection.embedding import fit_embedding, sample_rows
 from partwise.store.records import Collection, FirstShape, StageRun
 from partwise.workspace.segmentations import DESCRIBE
 from partwise.workspace.shapes import pages_of_shapes
@@ -21,7 +22,7 @@ LIGHT_FIELDS_AT_ONCE = 64
 def select_first_shapes(
     workspace: Workspace, collection: Collection, n_clusters: int, n_per_cluster: int, seed: int
 ) -> list[FirstShape]:
-    """Fits the embedding on all described shapes, clusters it, and puts the shapes nearest each centre on record.
+    """Fits the embedding on the described shapes, clusters it, and puts the shapes nearest each centre on record.
 
     Raises
     ------
@@ -34,14 +35,16 @@ def select_first_shapes(
             f"selecting {n_clusters} × {n_per_cluster} shapes needs {max(2, n_wanted)} described ones but "
             f"{collection.name!r} has {len(described)}; run `partwise preprocess`, or ask for fewer"
         )
-    fitting, clustering = np.random.default_rng(seed).spawn(2)
-    embedding = fit_embedding(_light_fields(workspace, described), fitting)
+    sampling, fitting, clustering = np.random.default_rng(seed).spawn(3)
+    sample = [described[row] for row in sample_rows(len(described), sampling)]
+    embedding = fit_embedding(_light_fields(workspace, sample), fitting)
     points = np.concatenate([embedding.project(batch) for batch in _light_fields(workspace, described)])
     ids = [str(run.shape_id) for run in described]
     chosen = first_shapes(points, ids, n_clusters, n_per_cluster, clustering)
-    key = f"embeddings/{collection.id}/{described[-1].key[:16]}-{len(described)}.safetensors"
     shape_ids = np.array([run.shape_id for run in described], dtype=np.int64)
-    workspace.arrays.put_bytes(key, save({**embedding.to_arrays(), "points": points, "shape_ids": shape_ids}))
+    stored = save({**embedding.to_arrays(), "points": points, "shape_ids": shape_ids})
+    key = f"embeddings/{collection.id}/{hashlib.sha256(stored).hexdigest()}.safetensors"
+    workspace.arrays.put_bytes(key, stored)
     workspace.catalog.set_embedding(collection.id, key)
     firsts = [FirstShape(int(first.id), ordinal, first.cluster) for ordinal, first in enumerate(chosen)]
     workspace.catalog.replace_first_shapes(collection.id, firsts)

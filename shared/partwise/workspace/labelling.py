@@ -8,13 +8,13 @@ from jaxtyping import UInt16
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, PartwiseError, StoreError
 from partwise.exchange.labels_psb import read_psb_labels
-from partwise.exchange.named_labels import UNLABELLED as NO_LABEL
 from partwise.exchange.named_labels import to_part_ids
 from partwise.exchange.seg import read_seg
-from partwise.labels.schema import UNLABELLED, PartSchema
+from partwise.labels.schema import PartSchema
 from partwise.store import meshes
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, LabelRevision, Mesh, NewRevision, RevisionKind, Shape
+from partwise.unlabelled import NO_CLASS, NO_PART_ID
 from partwise.workspace.shapes import all_shapes, shape_mesh
 from partwise.workspace.workspace import Workspace
 
@@ -91,8 +91,8 @@ def read_labels(path: Path, n_faces: int, schema: PartSchema) -> UInt16[np.ndarr
         ids = to_part_ids(named, {part.name: part.id for part in schema.parts}, str(path))
     else:
         ids = read_seg(path, n_faces)
-    ids = np.where(ids == NO_LABEL, UNLABELLED, ids)
-    unknown = sorted(set(np.unique(ids).tolist()) - {UNLABELLED, *schema.ids})
+    ids = np.where(ids == NO_CLASS, NO_PART_ID, ids)
+    unknown = sorted(set(np.unique(ids).tolist()) - {NO_PART_ID, *schema.ids})
     if unknown:
         raise LabelError(f"{path}: part id {unknown[0]} is not in the schema (ids {schema.ids}); correct the file")
     return ids.astype(np.uint16)

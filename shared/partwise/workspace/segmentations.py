@@ -53,17 +53,15 @@ def segment(workspace: Workspace, shapes: Sequence[Shape], segmentation: Segment
         run, mesh = runs.get(shape.id), meshes.get(shape.id)
         if run is None or mesh is None or run.block_name is None or run.row is None:
             continue
-        if run.summary.get("mesh_hash", mesh.mesh_hash) != mesh.mesh_hash:  # predicted before the shape got this mesh
-            continue
-        labels = _labels_of_run(workspace, run.block_name, run.row, segmentation)
-        if len(labels) == mesh.n_faces:
+        if run.summary["mesh_hash"] == mesh.mesh_hash:  # else predicted before the shape got this mesh
+            labels = _labels_of_run(workspace, run.block_name, run.row, segmentation)
             yield SegmentedShape(shape, mesh, labels, run.summary["model_version"])
 
 
-def reference_labels(workspace: Workspace, shape: Shape) -> UInt16[np.ndarray, " m"] | None:
-    """Ground truth for experiments, None if there is none. Never trained on, never shown to annotators."""
-    head = workspace.catalog.head_revision(shape.id, (RevisionKind.REFERENCE,))
-    return None if head is None else workspace.catalog.labels(head.id)
+def reference_labels(workspace: Workspace, mesh: Mesh) -> UInt16[np.ndarray, " m"] | None:
+    """Ground truth on this very mesh, for experiments; None if there is none. Never trained on, never shown."""
+    head = workspace.catalog.head_revision(mesh.shape_id, (RevisionKind.REFERENCE,))
+    return None if head is None or head.mesh_hash != mesh.mesh_hash else workspace.catalog.labels(head.id)
 
 
 def _labels_of_run(

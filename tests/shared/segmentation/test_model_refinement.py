@@ -237,9 +237,9 @@ def test_tuning_takes_the_smallest_of_equals():
         (1, [np.zeros(4, dtype=int)], [np.ones(4)], (), NotEnoughDataError, "has 1 and 0"),
         (1, [], [np.ones(4)], (1.0,), LabelError, "labels and areas"),
         (1, [np.zeros(4, dtype=int)], [], (1.0,), LabelError, "labels and areas"),
-        (1, [np.zeros(3, dtype=int)], [np.ones(4)], (1.0,), LabelError, "another mesh"),
-        (1, [np.zeros(4, dtype=int)], [np.ones(5)], (1.0,), LabelError, "another mesh"),
-        (1, [np.full(4, -1)], [np.ones(4)], (1.0,), NotEnoughDataError, "labelled area"),
+        (1, [np.zeros(3, dtype=int)], [np.ones(4)], (1.0,), LabelError, "one value a face"),
+        (1, [np.zeros(4, dtype=int)], [np.ones(5)], (1.0,), LabelError, "one value a face"),
+        (1, [np.full(4, -1)], [np.ones(4)], (1.0,), NotEnoughDataError, "true label and area"),
     ],
 )
 def test_tuning_refuses(n_shapes, truth, areas, candidates, error, message):

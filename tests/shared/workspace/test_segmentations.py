@@ -9,6 +9,7 @@ from partwise.testing.workspaces import publish_meshes
 from partwise.workspace.choices import Segmentation
 from partwise.workspace.labelling import commit_labels
 from partwise.workspace.segmentations import reference_labels, segment, segmented_shapes
+from partwise.workspace.shapes import shape_mesh
 
 LABELS = np.array([1, 1, 2, 0], dtype=np.uint16)
 
@@ -38,11 +39,14 @@ def test_confirmed_labels_are_those_of_people(filled, kind: RevisionKind) -> Non
 def test_reference_labels_are_never_shown(filled) -> None:
     _commit(filled.preprocessed(), "a.off", RevisionKind.REFERENCE)
     assert _segmented(filled, Segmentation.CONFIRMED) == {}
-    assert np.array_equal(reference_labels(filled.workspace, filled.shape("a.off")), LABELS)
+    assert np.array_equal(
+        reference_labels(filled.workspace, shape_mesh(filled.workspace, filled.shape("a.off"))), LABELS
+    )
 
 
 def test_a_shape_without_ground_truth_has_none(filled) -> None:
-    assert reference_labels(filled.workspace, filled.shape("a.off")) is None
+    filled.preprocessed()
+    assert reference_labels(filled.workspace, shape_mesh(filled.workspace, filled.shape("a.off"))) is None
 
 
 def test_predicted_labels_are_the_likeliest_parts(filled) -> None:

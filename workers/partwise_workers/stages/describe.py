@@ -49,7 +49,8 @@ class DescribeStage:
 
 
 def _describe(describer: Describer, inputs: ShapeInputs) -> StageResult:
-    description = describer.describe(mesh_stage.stored_mesh(inputs))
+    mesh = mesh_stage.stored_mesh(inputs)
+    description = describer.describe(mesh)
     shape_context = quantise(description.shape_context)
     spin_image = quantise(description.spin_image)
     arrays_made = {
@@ -60,4 +61,5 @@ def _describe(describer: Describer, inputs: ShapeInputs) -> StageResult:
         "shape_diameter": description.shape_diameter,
         "light_field": description.light_field,
     }
-    return StageResult(arrays_made, {"core_s": description.core_s})
+    summary = {"core_s": description.core_s, "renderer": describer.renderer, "mesh_hash": mesh.content_hash()}
+    return StageResult(arrays_made, summary)

@@ -62,8 +62,9 @@ def _evaluate(model: "TrainedModel", version: int, inputs: ShapeInputs) -> Stage
         branch: CodedGrids(inputs.array(describe.NAME, branch), inputs.array(describe.NAME, f"{branch}_scale"))
         for branch in model.spec.branches
     }
-    probabilities = predict(model, grids).probabilities
-    areas = face_areas(stored_mesh(inputs))
+    probabilities = predict(model, grids, device="cpu").probabilities  # an actor has a core, no card
+    mesh = stored_mesh(inputs)
+    areas = face_areas(mesh)
     predicted = np.argmax(probabilities, axis=1)
     area = np.bincount(predicted, areas, minlength=len(model.part_ids))
     share = area / max(areas.sum(), np.finfo(float).tiny)
@@ -72,6 +73,7 @@ def _evaluate(model: "TrainedModel", version: int, inputs: ShapeInputs) -> Stage
         ENTROPY_BY_AREA: float(mean_entropy_by_area(probabilities, areas)),
         "area_share": {str(part): float(s) for part, s in zip(model.part_ids, share, strict=True)},
         "model_version": version,
+        "mesh_hash": mesh.content_hash(),
     }
     made = {
         "probabilities": probabilities.astype(np.float16),

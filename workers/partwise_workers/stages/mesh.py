@@ -8,15 +8,19 @@ import numpy as np
 
 from partwise.config import MeshConfig
 from partwise.errors import MeshError
+from partwise.geometry.faces import face_areas
 from partwise.geometry.manifold import manifold_report
 from partwise.io.read import read_mesh
 from partwise.mesh import TriMesh
 from partwise.store.array_store import ArrayStore
 from partwise.store.block_kinds import MESH
 from partwise.store.blocks import BlockKind
+from partwise.store.meshes import mesh_arrays
 from partwise_workers.stage import RunStage, ShapeInputs, StageResult
 
 NAME = "mesh"
+MAX_LOST_SHARE = 0.01
+"""Of the faces, that may collapse when coordinates are rounded to float32."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +57,25 @@ class MeshStage:
                 "simplify it, or raise max_faces under [mesh] in partwise.toml"
             )
         report = asdict(manifold_report(mesh))
+        arrays = mesh_arrays(mesh)
+        _check_rounding(arrays["vertices"], report["n_degenerate_faces"], mesh, file_name)
         summary = {
-            "hash": mesh.content_hash(),
+            "mesh_hash": mesh.content_hash(),
             "n_vertices": mesh.n_vertices,
             "n_faces": mesh.n_faces,
             "report": report,
         }
-        arrays = {"vertices": mesh.vertices.astype(np.float32), "faces": mesh.faces.astype(np.uint32)}
         return StageResult(arrays, summary)
+
+
+def _check_rounding(stored: np.ndarray, n_degenerate: int, mesh: TriMesh, file_name: str) -> None:
+    """Refuses a mesh that loses shape in float32: too large, or small and far from the origin."""
+    remedy = "move the shape to the origin, or scale it to a usual size"
+    if not np.isfinite(stored).all():
+        raise MeshError(f"coordinates must fit float32 but {file_name} has {np.abs(mesh.vertices).max():g}; {remedy}")
+    n_lost = int((face_areas(TriMesh(stored, mesh.faces)) <= 0).sum()) - n_degenerate
+    if n_lost > MAX_LOST_SHARE * mesh.n_faces:
+        raise MeshError(f"faces must keep their area in float32 but {n_lost:,} of {file_name} lose it; {remedy}")
 
 
 def stored_mesh(inputs: ShapeInputs) -> TriMesh:

@@ -47,7 +47,12 @@ class RefineStage:
     def _run(self, inputs: ShapeInputs) -> StageResult:
         probabilities = inputs.array(evaluate.NAME, "probabilities").astype(np.float64)
         part_ids = inputs.array(evaluate.NAME, "part_ids")
-        refined = refine(stored_mesh(inputs), probabilities, self.parameters)
+        mesh = stored_mesh(inputs)
+        refined = refine(mesh, probabilities, self.parameters)
         changed = float(np.mean(refined != np.argmax(probabilities, axis=1)))
-        summary = {"changed_share": changed, "model_version": self.model_version}
+        summary = {
+            "changed_share": changed,
+            "model_version": self.model_version,
+            "mesh_hash": mesh.content_hash(),
+        }
         return StageResult({"labels": part_ids[refined].astype(np.uint16)}, summary)
