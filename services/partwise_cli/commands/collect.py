@@ -85,11 +85,21 @@ def retry(
     ws: WorkspaceArgument,
     collection: CollectionOption = None,
     stage: Annotated[str | None, typer.Option(help="Only failures of this stage.", show_default=False)] = None,
+    lost: Annotated[
+        bool, typer.Option("--lost", help="Instead: check all stored arrays, give up those that are damaged.")
+    ] = False,
 ) -> None:
     """Forget failures, to try again.  [dim]partwise retry ws --stage mesh[/dim]"""
+    from partwise.workspace.recovery import give_up_lost_blocks
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
+    if lost:
+        with open_workspace(ws) as workspace, shape_progress("check") as on_progress:
+            names = give_up_lost_blocks(workspace, on_progress)
+        again = "; run `partwise preprocess`, and `evaluate` and `refine` if a model exists" if names else ""
+        typer.echo(f"{counted(len(names), 'block')} lost or damaged{again}")
+        return
     with open_workspace(ws) as workspace:
         n_cleared = workspace.catalog.clear_failures(find_collection(workspace, collection).id, stage)
     if n_cleared:

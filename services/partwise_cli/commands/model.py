@@ -51,7 +51,7 @@ def _finish(what: str, n_done: int, n_failed: int) -> None:
     if n_done + n_failed:
         typer.echo(f"{counted(n_done, 'shape')} {what}, {n_failed:,} failed")
     else:
-        typer.echo("nothing to do")
+        typer.echo("nothing to do: every shape that is ready for it has been " + what)
     if n_failed:
         typer.echo("`partwise status` says why")
         raise typer.Exit(SOME_FAILED)

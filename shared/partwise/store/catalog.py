@@ -202,6 +202,13 @@ class StageCatalog(Protocol):
         """Blocks that no current run needs and that are not the only place of a mesh somebody labelled."""
         ...
 
+    def supersede_block(self, name: str) -> int:
+        """Record that a block's arrays are lost: its runs are current no more, so they will be done again.
+
+        Returns how many runs that were.
+        """
+        ...
+
     def delete_blocks(self, names: SizedIterable[str]) -> None:
         """Forget blocks and their superseded runs. `ConflictError` if one is in use: then nothing is deleted."""
         ...

@@ -195,6 +195,10 @@ class SqlCatalog:
         with reading(self._engine) as connection:
             return blocks.unused_blocks(connection, limit)
 
+    def supersede_block(self, name: str) -> int:
+        with writing(self._engine) as connection:
+            return blocks.supersede_block(connection, name)
+
     def delete_blocks(self, names: SizedIterable[str]) -> None:
         with writing(self._engine) as connection:
             blocks.delete_blocks(connection, names)

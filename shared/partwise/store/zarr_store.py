@@ -72,7 +72,7 @@ class ZarrArrayStore:
         if combined_checksum(digests) != address.checksum:
             raise StoreError(
                 f"block {address.name} must have checksum {address.checksum[:12]}… but what is stored at {self._where} "
-                "differs; delete it and preprocess its shapes again"
+                "differs; run `partwise retry --lost`, then preprocess"
             )
 
     def block_names(self) -> Sequence[str]:

@@ -36,14 +36,14 @@ def ingest(workspace: Workspace, collection: Collection, meshes: Mapping[str, Tr
 def publish_meshes(workspace: Workspace, meshes: Mapping[int, TriMesh], key: str = "mesh-1") -> str:
     """Publishes the mesh of each shape, by id, in one block; returns its name."""
     address = workspace.arrays.write_block(MESH, [mesh_arrays(mesh) for mesh in meshes.values()])
-    rows = list(enumerate(meshes.items()))
-    workspace.catalog.publish_block(
-        _row(address, MESH),
-        [NewStageRun(shape_id, stage.MESH, key, row) for row, (shape_id, _) in rows],
-        meshes=[
-            NewMesh(shape_id, mesh.content_hash(), mesh.n_vertices, mesh.n_faces, row) for row, (shape_id, mesh) in rows
-        ],
-    )
+    made = [
+        NewMesh(shape_id, mesh.content_hash(), mesh.n_vertices, mesh.n_faces, row)
+        for row, (shape_id, mesh) in enumerate(meshes.items())
+    ]
+    runs = [
+        NewStageRun(mesh.shape_id, stage.MESH, key, mesh.row, summary={"mesh_hash": mesh.mesh_hash}) for mesh in made
+    ]
+    workspace.catalog.publish_block(_row(address, MESH), runs, meshes=made)
     return address.name
 
 
@@ -53,7 +53,10 @@ def publish_features(
     """Publishes random descriptors of shapes that have meshes, in one block; returns its name."""
     meshes = workspace.catalog.meshes(shape_ids)
     address = workspace.arrays.write_block(FEATURES, [_features(meshes[i].n_faces, rng) for i in shape_ids])
-    runs = [NewStageRun(shape_id, stage.DESCRIBE, key, row) for row, shape_id in enumerate(shape_ids)]
+    runs = [
+        NewStageRun(shape_id, stage.DESCRIBE, key, row, summary={"mesh_hash": meshes[shape_id].mesh_hash})
+        for row, shape_id in enumerate(shape_ids)
+    ]
     workspace.catalog.publish_block(_row(address, FEATURES), runs)
     return address.name
 

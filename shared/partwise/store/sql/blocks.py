@@ -48,6 +48,11 @@ def _labels_of_shape_mesh() -> ColumnElement[bool]:
     )
 
 
+def supersede_block(connection: Connection, name: str) -> int:
+    in_block = t.stage_run.c.block_id == block(connection, name).id
+    return connection.execute(update(t.stage_run).where(in_block, is_current_run()).values(is_superseded=True)).rowcount
+
+
 def delete_blocks(connection: Connection, names: SizedIterable[str]) -> None:
     for name in names:
         found = connection.execute(select(t.block.c.id, _is_in_use()).where(t.block.c.name == name)).first()

@@ -90,6 +90,18 @@ class StageConformance:
         current = catalog.stage_runs(ids, "describe")[ids[0]]
         assert (current.key, current.block_name, current.is_superseded) == ("k1", back, False)
 
+    def test_the_runs_of_a_lost_block_are_current_no_more(self, catalog: Catalog) -> None:
+        _, ids = add_collection(catalog, 2)
+        lost, whole = publish(catalog, ids[:1]), publish(catalog, ids[1:])
+        assert catalog.supersede_block(lost) == 1
+        assert catalog.stage_runs(ids, "describe").keys() == {ids[1]}
+        assert [block.name for block in catalog.unused_blocks()] == [lost]
+        assert catalog.block(whole).name == whole
+
+    def test_an_unknown_block_cannot_be_lost(self, catalog: Catalog) -> None:
+        with raises(NotFoundError, "nowhere"):
+            catalog.supersede_block("nowhere")
+
     def test_a_block_is_used_while_any_of_its_shapes_needs_it(self, catalog: Catalog) -> None:
         _, ids = add_collection(catalog, 2)
         publish(catalog, ids, key="k1")
