@@ -1,5 +1,6 @@
 """The main job on simulated shapes, where ground truth can stand in for an annotator and judge the result."""
 
+import shutil
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +28,7 @@ from partwise_workers.training import train_collection
 ANNOTATOR = "simulated annotator"
 SCORE = "entropy"
 N_WORST = 12
+MARKER = ".partwise-demo"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,17 +72,16 @@ class _Stopwatch:
 
 
 def run_demo(out: Path, request: DemoRequest) -> DemoReport:
-    """Runs every step into `out`.
+    """Runs every step into `out`. What an earlier demo left there is removed first.
 
     Raises
     ------
-    ConfigError : `out` already holds something.
+    ConfigError : `out` holds something that no demo made.
     """
-    if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise ConfigError(f"the demo needs an empty folder but {out} holds something; remove it or name another")
+    simulation = SimulationRequest(request.category, request.n_shapes, request.seed)
+    prepare_folder(out)
     shapes, workspace_path = out / "shapes", out / "workspace"
     watch = _Stopwatch()
-    simulation = SimulationRequest(request.category, request.n_shapes, request.seed)
     with progress("simulate") as on_progress:
         write_collection(simulation, shapes, on_progress)
     watch.lap("simulate")
@@ -97,6 +98,21 @@ def run_demo(out: Path, request: DemoRequest) -> DemoReport:
         confirmed = _confirm_first_shapes(workspace, collection, request)
         watch.lap("select and confirm")
         return _learn_and_report(out, request, workspace, collection, described.n_done, confirmed, watch)
+
+
+def prepare_folder(out: Path) -> None:
+    """Makes `out` ready: removes what an earlier demo left, and marks the folder as the demo's.
+
+    Raises
+    ------
+    ConfigError : `out` holds something that no demo made.
+    """
+    if (out / MARKER).is_file():
+        for name in ("shapes", "workspace", "labels"):
+            shutil.rmtree(out / name, ignore_errors=True)
+    elif out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise ConfigError(f"the demo needs an empty folder but {out} holds something; remove it or name another")
+    write_atomically(out / MARKER, b"Made by `partwise demo`, which removes its own folders here when it runs again.\n")
 
 
 def _init(path: Path, request: DemoRequest) -> None:

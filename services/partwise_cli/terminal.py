@@ -105,6 +105,8 @@ def _plain(title: str) -> Advance:
 
     def advance(done: int, total: int, note: str = "") -> None:
         nonlocal shown
+        if done < shown * total:  # a new round under the same title
+            shown = 0.0
         if total and (done >= (shown + PLAIN_STEP) * total or done == total > shown * total):
             shown = done / total
             typer.echo(f"{title}: {done} of {total} {note}".rstrip(), err=True)

@@ -26,7 +26,6 @@ from partwise_workers.cluster import connected
 from partwise_workers.passes import preprocess
 from partwise_workers.training import StoredShapes, labelled_shapes
 
-COLLECTION = "leave-one-out"
 OnTraining = Callable[[int, int, str], None]
 
 
@@ -59,8 +58,17 @@ class Summary:
     train_s: float
 
 
-def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> int:
-    """Ingests and describes the folder into a workspace, and returns how many are labelled. What is there is kept.
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """What of a folder can be measured on: shapes with labels. refused : files that cannot be used, and why."""
+
+    collection: str
+    n_shapes: int
+    refused: tuple[str, ...]
+
+
+def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> Prepared:
+    """Ingests and describes the folder into a collection of its own name. What the workspace has already is kept.
 
     Raises
     ------
@@ -76,19 +84,25 @@ def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> i
         raise NotEnoughDataError(f"leave one out needs <id>{PSB_ENDING} files but {folder} has none; see --category")
     init_workspace(workspace_path)
     with open_workspace(workspace_path) as workspace:
-        if not workspace.catalog.list_collections():
-            workspace.catalog.create_collection(COLLECTION, names)
-        collection = workspace.catalog.get_collection(COLLECTION)
-        ingest_folder(workspace, collection, folder)
+        if folder.name not in {known.name for known in workspace.catalog.list_collections()}:
+            workspace.catalog.create_collection(folder.name, names)
+        collection = workspace.catalog.get_collection(folder.name)
+        ingested = ingest_folder(workspace, collection, folder)
         with connected():
             preprocess(workspace, collection, on_progress)
-        import_labels(workspace, collection, folder, RevisionKind.IMPORTED, "benchmark")
+        imported = import_labels(workspace, collection, folder, RevisionKind.IMPORTED, "benchmark")
+        failures = workspace.catalog.failures(collection.id)
         n_labelled = sum(1 for _ in labelled_shapes(workspace, collection))
     if n_labelled < 2:
         raise NotEnoughDataError(
             f"leave one out needs 2 labelled shapes or more but {folder} has {n_labelled}; add some"
         )
-    return n_labelled
+    refused = (
+        *(file.reason for file in ingested.refused),
+        *(f"{failure.source_key}: {failure.run.reason}" for failure in failures),
+        *(labels.reason for labels in imported.refused),
+    )
+    return Prepared(collection.name, n_labelled, refused)
 
 
 def part_names_of(folder: Path) -> list[str]:
@@ -102,10 +116,10 @@ def part_names_of(folder: Path) -> list[str]:
 
 
 def leave_one_out(
-    workspace: Workspace, recipe: Recipe, limit: int | None, on_training: OnTraining
+    workspace: Workspace, collection_name: str, recipe: Recipe, limit: int | None, on_training: OnTraining
 ) -> Iterator[HeldOut]:
     """Holds out `limit` evenly spaced shapes, one after the other; all of them without a limit."""
-    collection = workspace.catalog.get_collection(COLLECTION)
+    collection = workspace.catalog.get_collection(collection_name)
     labelled = list(labelled_shapes(workspace, collection))
     part_ids = workspace.catalog.parts(collection.id).ids
     shapes = workspace.catalog.shapes_by_id([item.shape_id for item in labelled])

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from partwise_cli.arguments import JsonOption
-from partwise_cli.terminal import print_json, print_table, progress, shape_progress
+from partwise_cli.terminal import print_json, print_table, progress, shape_progress, warning_lines
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")
 
@@ -65,14 +65,15 @@ def loo(
     recipe = Recipe(preset=preset, n_iterations=iterations, seed=seed)
     with _workspace_folder(workspace) as path:
         with shape_progress("describe") as on_run:
-            n_shapes = prepare(folder / category, path, on_run)
+            prepared = prepare(folder / category, path, on_run)
+        warning_lines(prepared.refused)
         results = []
         with open_workspace(path) as opened, progress("train") as on_progress:
-            for result in leave_one_out(opened, recipe, limit, on_progress):
+            for result in leave_one_out(opened, prepared.collection, recipe, limit, on_progress):
                 results.append(result)
                 if as_json:
                     print_json(asdict(result))
-    summary = summarise(results, category, preset, n_shapes)
+    summary = summarise(results, category, preset, prepared.n_shapes)
     if as_json:
         print_json(asdict(summary))
         return

@@ -18,14 +18,15 @@ from partwise.workspace.labelling import commit_labels
 from partwise.workspace.workspace import init_collection, open_workspace
 from partwise_cli.bench import describing
 from partwise_cli.bench.leave_one_out import (
-    COLLECTION,
     HeldOut,
+    Prepared,
     evenly_spaced,
     leave_one_out,
     part_names_of,
     prepare,
     summarise,
 )
+from partwise_workers.plan import chain_keys, description_stages
 
 
 def test_describing_is_timed_file_by_file(invoke, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -89,13 +90,16 @@ def test_a_recipe_that_cannot_be_is_refused_before_any_work(invoke, tmp_path: Pa
 def labelled(tmp_path: Path, tetrahedron: TriMesh) -> Path:
     """Four labelled shapes of 64 faces."""
     mesh = subdivided(subdivided(tetrahedron))
-    init_collection(tmp_path / "ws", COLLECTION, ["body", "wing"], {})
+    init_collection(tmp_path / "ws", "chairs", ["body", "wing"], {})
     with open_workspace(tmp_path / "ws") as workspace:
-        collection = workspace.catalog.get_collection(COLLECTION)
+        collection = workspace.catalog.get_collection("chairs")
         meshes = {f"{i}.off": TriMesh(mesh.vertices * (i + 1.0), mesh.faces) for i in range(4)}
         ids = ingest(workspace, collection, meshes)
-        publish_meshes(workspace, {ids[key]: mesh for key, mesh in meshes.items()})
-        publish_features(workspace, list(ids.values()), np.random.default_rng(0))
+        rng = np.random.default_rng(0)
+        for name, shape_id in ids.items():
+            keys = chain_keys(workspace.catalog.shape(shape_id), description_stages(workspace.config))
+            publish_meshes(workspace, {shape_id: meshes[name]}, keys[0])
+            publish_features(workspace, [shape_id], rng, keys[1])
         labels = np.where(np.arange(64) < 32, 1, 2).astype(np.uint16)
         for shape_id in ids.values():
             commit_labels(
@@ -108,7 +112,8 @@ def test_each_held_out_shape_is_judged_by_a_model_of_the_others(labelled: Path) 
     told: list[tuple[int, int, str]] = []
     with open_workspace(labelled) as workspace:
         recipe = Recipe(n_iterations=5, batch_size=16)
-        results = list(leave_one_out(workspace, recipe, 2, lambda done, total, name: told.append((done, total, name))))
+        tell = lambda done, total, name: told.append((done, total, name))  # noqa: E731
+        results = list(leave_one_out(workspace, "chairs", recipe, 2, tell))
     assert [result.shape for result in results] == ["0.off", "3.off"]
     assert all(result.n_faces == 64 for result in results)
     assert all(0 <= value <= 1 for r in results for value in (r.accuracy_raw, r.accuracy_refined_by_area))
@@ -119,7 +124,7 @@ def test_each_held_out_shape_is_judged_by_a_model_of_the_others(labelled: Path) 
 def _two_results(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave one out takes long: its outcome is made up."""
     results = [HeldOut("a.off", 4, 0.5, 0.6, 0.7, 0.8, 1.0, 10.0), HeldOut("b.off", 4, 0.7, 0.8, 0.9, 1.0, 1.0, 20.0)]
-    monkeypatch.setattr("partwise_cli.bench.leave_one_out.prepare", lambda folder, path, on_run: 4)
+    monkeypatch.setattr("partwise_cli.bench.leave_one_out.prepare", lambda folder, path, on_run: Prepared("x", 4, ()))
     monkeypatch.setattr("partwise_cli.bench.leave_one_out.leave_one_out", lambda *_: iter(results))
 
 

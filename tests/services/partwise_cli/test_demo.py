@@ -9,7 +9,7 @@ from partwise.errors import ConfigError, ParameterError
 from partwise.store.records import Shape
 from partwise.workspace.assessment import ShapeAccuracy
 from partwise_cli import demo
-from partwise_cli.demo import DemoReport, DemoRequest
+from partwise_cli.demo import MARKER, DemoReport, DemoRequest, prepare_folder
 from partwise_cli.demo_report import print_report, report_as_json
 
 
@@ -82,3 +82,18 @@ def test_the_demo_as_json(invoke, report: DemoReport, tmp_path: Path, monkeypatc
     monkeypatch.setattr(demo, "run_demo", lambda out, request: report)
     document = json.loads(invoke("demo", tmp_path / "out", "--json").stdout)
     assert set(document["accuracy"]) == {"all", "most certain quarter", "least certain quarter"}
+
+
+def test_a_demo_replaces_an_earlier_one_and_nothing_else(tmp_path: Path) -> None:
+    prepare_folder(tmp_path)
+    (tmp_path / "shapes").mkdir()
+    (tmp_path / "mine.txt").write_text("stays")
+    prepare_folder(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [MARKER, "mine.txt"]
+
+
+def test_a_folder_that_no_demo_made_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "shapes").mkdir()
+    with pytest.raises(ConfigError, match="empty folder"):
+        prepare_folder(tmp_path)
+    assert (tmp_path / "shapes").is_dir()
