@@ -4,6 +4,7 @@ import hashlib
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from partwise.errors import NotFoundError, StoreError
@@ -68,7 +69,7 @@ def test_a_labelled_shape_keeps_its_file(
     ingest_folder(workspace, collection, folder)
     shape = workspace.catalog.shape_by_key(collection.id, "a.off")
     publish_meshes(workspace, {shape.id: tetrahedron})
-    commit_labels(workspace, collection, shape, [1, 1, 1, 2], RevisionKind.HUMAN, "ann")
+    commit_labels(workspace, collection, shape, np.array([1, 1, 1, 2], dtype=np.uint16), RevisionKind.HUMAN, "ann")
     (folder / "a.off").write_bytes(b"something else")
     report = ingest_folder(workspace, collection, folder)
     assert (report.n_unchanged, report.n_changed) == (1, 0)

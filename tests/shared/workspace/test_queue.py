@@ -1,5 +1,6 @@
 """The ranked queue: the first shapes before there is a model, the least certain ones after."""
 
+import numpy as np
 import pytest
 
 from partwise.store.records import FirstShape, RevisionKind, ShapeState
@@ -19,7 +20,7 @@ def _select(filled, *keys: str) -> None:
 
 
 def _confirm(filled, key: str) -> None:
-    labels = [1] * filled.meshes[key].n_faces
+    labels = np.ones(filled.meshes[key].n_faces, dtype=np.uint16)
     commit_labels(filled.workspace, filled.collection, filled.shape(key), labels, RevisionKind.HUMAN, "ann")
 
 
