@@ -3,6 +3,19 @@
 from collections.abc import Iterator
 
 import pytest
+from jaxtyping import install_import_hook
+
+ARRAY_FUNCTIONS = (
+    "geometry.adjacency", "geometry.dihedral", "geometry.faces", "geometry.sampling", "geometry.vertices",
+    "features.shape_context", "features.shape_diameter", "features.spin_image",
+    "segmentation.alpha_expansion",
+)  # fmt: skip
+"""Modules whose annotations are checked on every call while tests run: array shapes, dtypes, and that they agree.
+
+Modules that check what they are given themselves are not among them: their own errors are what is tested.
+"""
+
+install_import_hook([f"partwise.{module}" for module in ARRAY_FUNCTIONS], "beartype.beartype")
 
 N_CPUS = 2
 

@@ -73,5 +73,6 @@ def _frozen_copy(values: np.ndarray, dtype: type) -> np.ndarray:
         array: np.ndarray = np.array(values, dtype=dtype, order="C")
     except (TypeError, ValueError) as error:
         raise MeshError(f"mesh arrays must be numeric but numpy says: {error}; check the file's contents") from error
+    array = array.view(dtype)  # numpy keeps a C long long as such, which is the same but prints as another type
     array.flags.writeable = False
     return array

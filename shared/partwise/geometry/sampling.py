@@ -62,7 +62,7 @@ def farthest_point_faces(mesh: TriMesh, graph: FaceGraph, n_per_component: int) 
         faces=faces[order],
         component_starts=_starts(n_chosen),
         cell=cell,
-        areas=np.bincount(cell[owned], weights=areas[owned], minlength=len(faces)),
+        areas=np.bincount(cell[owned], weights=areas[owned], minlength=len(faces)).astype(np.float64),
         n_cell_faces=np.bincount(cell[owned], minlength=len(faces)),
     )
 
