@@ -75,7 +75,9 @@ class Calibration:
 
     @property
     def suggested_distance(self) -> float:
-        """Half way between the greatest good and the least wrong distance.
+        """A fifth of the way from the greatest good to the least wrong distance.
+
+        Near the good side: a good surface refused costs one more attempt, a bad one accepted costs labels.
 
         Raises
         ------
@@ -86,7 +88,7 @@ class Calibration:
                 f"good pairs must lie closer than wrong ones but reach {self.greatest_good:.3f} where wrong ones start "
                 f"at {self.least_wrong:.3f}; look at the shapes that overlap"
             )
-        return (self.greatest_good + self.least_wrong) / 2.0
+        return self.greatest_good + 0.2 * (self.least_wrong - self.greatest_good)
 
 
 def calibrate(

