@@ -25,7 +25,7 @@ from partwise.workspace.labelling import ImportReport, commit_labels, import_lab
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.queue import QueuedShape, ranked_queue
 from partwise.workspace.segmentations import Segmentation, reference_labels, segmented_shapes
-from partwise.workspace.shapes import all_shapes
+from partwise.workspace.shapes import all_shapes, shape_mesh
 from partwise.workspace.status import CollectionStatus, collection_status
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers.model_store import ModelReference, read_model
@@ -102,7 +102,7 @@ def run(workspace: Workspace, collection: Collection, root: Path) -> Pipeline:
     imported = import_labels(workspace, collection, root / "shapes", RevisionKind.REFERENCE, "simulation")
     selected = select_first_shapes(workspace, collection, CLUSTERS, 1, 0)
     for shape in workspace.catalog.shapes_by_id([first.shape_id for first in selected]).values():
-        truth = reference_labels(workspace, shape)
+        truth = reference_labels(workspace, shape_mesh(workspace, shape))
         assert truth is not None
         commit_labels(workspace, collection, shape, truth, RevisionKind.HUMAN, "ann")
     return Pipeline(
@@ -175,7 +175,8 @@ def test_probabilities_are_shares(pipeline: Pipeline) -> None:
 
 
 def test_a_little_training_already_beats_calling_everything_the_largest_part(pipeline: Pipeline) -> None:
-    truths = [reference_labels(pipeline.workspace, each.shape) for each in pipeline.queue]
+    meshes = [shape_mesh(pipeline.workspace, each.shape) for each in pipeline.queue]
+    truths = [reference_labels(pipeline.workspace, mesh) for mesh in meshes]
     largest = [np.bincount(truth).max() / len(truth) for truth in truths if truth is not None]
     refined = assess(pipeline.workspace, pipeline.collection, Segmentation.REFINED)
     assert np.mean([each.by_face for each in refined]) > np.mean(largest)
