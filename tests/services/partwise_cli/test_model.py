@@ -41,7 +41,7 @@ def test_a_pass_needs_a_model(invoke, described: Path, command: str) -> None:
     [
         (RunProgress(3, 0, 3), "3 shapes {}, 0 failed\n", 0),
         (RunProgress(1, 1, 2), "1 shape {}, 1 failed\n`partwise status` says why\n", 1),
-        (RunProgress(0, 0, 0), "nothing to do\n", 0),
+        (RunProgress(0, 0, 0), "nothing to do: every shape that is ready for it has been {}\n", 0),
     ],
 )
 @pytest.mark.parametrize(("command", "done"), [("evaluate", "evaluated"), ("refine", "refined")])
