@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import ray
-from ray.exceptions import RayError
 
 from partwise_workers.errors import WorkerError
 
@@ -26,8 +25,15 @@ LOCAL_OBJECT_STORE_BYTES = 128 * 1024 * 1024  # ids and small summaries travel, 
 
 CONNECT_S = 10.0
 
-# Actors have an environment of their own, so that Ray would start these general workers for nothing.
-NO_SPARE_WORKERS = {"enable_worker_prestart": False, "prestart_worker_first_driver": False}
+LOCAL_SYSTEM = {
+    # Actors have an environment of their own, so that Ray would start general workers for nothing.
+    "enable_worker_prestart": False,
+    "prestart_worker_first_driver": False,
+    # On a machine that is busy with other things, a process that is slow to answer is not dead.
+    "worker_register_timeout_seconds": 300,
+    "agent_register_timeout_ms": 300_000,
+    "health_check_timeout_ms": 60_000,
+}
 
 
 @contextmanager
@@ -53,14 +59,22 @@ def connected(n_cpus: int | None = None) -> Iterator[None]:
             ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         else:
             _start_local(n_cpus or os.cpu_count() or 1)
-    except (OSError, RuntimeError, ValueError, RayError) as error:
-        place = f"the Ray cluster at RAY_ADDRESS={address}" if address else "a local Ray"
-        remedy = "start it, or unset RAY_ADDRESS to work locally" if address else "is there room in /tmp and /dev/shm?"
-        raise WorkerError(f"{place} must be reachable but: {error}; {remedy}") from error
+    except Exception as error:  # Ray raises bare ones too, as for a node that is slow to start
+        raise WorkerError(_why_not(address, error)) from error
     try:
         yield
     finally:
         ray.shutdown()
+
+
+def _why_not(address: str | None, error: Exception) -> str:
+    reason = next(iter(str(error).strip().splitlines()), type(error).__name__)
+    if address:
+        return (
+            f"the Ray cluster at RAY_ADDRESS={address} must be reachable but: {reason}; start it, or unset RAY_ADDRESS "
+            "to work locally"
+        )
+    return f"a local Ray must start but: {reason}; is there room in /tmp and /dev/shm, or is the machine too busy?"
 
 
 def require_listener(address: str) -> None:
@@ -78,7 +92,7 @@ def _start_local(n_cpus: int) -> None:
         log_to_driver=False,
         logging_level=logging.ERROR,
         object_store_memory=LOCAL_OBJECT_STORE_BYTES,
-        _system_config=NO_SPARE_WORKERS,
+        _system_config=LOCAL_SYSTEM,
     )
 
 
