@@ -1,9 +1,10 @@
 """Workspaces of three small shapes for commands to work on, made without Ray, and ways to run commands."""
 
+import logging
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,19 @@ from partwise_cli.main import app
 PARTS = ("body", "handle")
 Invoke = Callable[..., Any]
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.fixture(autouse=True)
+def _logging_as_before() -> Iterator[None]:
+    """Commands configure logging for the whole process: what tests elsewhere see must not depend on it."""
+    root = logging.getLogger()
+    loggers = [root, *(logging.getLogger(name) for name in ("partwise", "partwise_workers", "partwise_cli"))]
+    handlers, levels = list(root.handlers), [logger.level for logger in loggers]
+    yield
+    root.handlers[:] = handlers
+    for logger, level in zip(loggers, levels, strict=True):
+        logger.setLevel(level)
+    logging.captureWarnings(False)
 
 
 @pytest.fixture

@@ -96,18 +96,6 @@ def test_log_lines_without_fields_are_the_message() -> None:
     assert FieldFormatter().format(record) == "info: done"
 
 
-@pytest.fixture
-def _logging_as_before():
-    root, package = logging.getLogger(), logging.getLogger("partwise")
-    before = list(root.handlers), root.level, package.level
-    yield
-    root.handlers[:] = before[0]
-    root.setLevel(before[1])
-    package.setLevel(before[2])
-    logging.captureWarnings(False)
-
-
-@pytest.mark.usefixtures("_logging_as_before")
 @pytest.mark.parametrize(("verbose", "lines"), [(False, ["warning: b"]), (True, ["info: a", "warning: b"])])
 def test_verbose_shows_what_partwise_does(capsys: Captured, verbose: bool, lines: list[str]) -> None:
     configure_logging(verbose)
@@ -117,7 +105,6 @@ def test_verbose_shows_what_partwise_does(capsys: Captured, verbose: bool, lines
     assert capsys.readouterr().err.splitlines() == lines
 
 
-@pytest.mark.usefixtures("_logging_as_before")
 def test_logging_is_configured_once() -> None:
     for _ in range(2):
         configure_logging(False)

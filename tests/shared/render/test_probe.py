@@ -27,7 +27,7 @@ def test_a_crashing_driver_leads_to_ray_casting_and_is_logged(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(probe, "_PROBE_COMMAND", CRASH)
-    with caplog.at_level(logging.INFO), open_depth_renderer("auto") as renderer:
+    with caplog.at_level(logging.INFO, probe.__name__), open_depth_renderer("auto") as renderer:
         assert renderer.name == "raycast"
     (record,) = [r for r in caplog.records if r.name == probe.__name__]
     assert record.__dict__["renderer"] == "raycast"
