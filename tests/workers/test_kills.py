@@ -43,7 +43,7 @@ renderer = "raycast"
 """
 COMMAND = (sys.executable, "-c", "from partwise_cli.main import main; main()", "preprocess")
 SOME_FAILED, INTERRUPTED = 1, 130
-POLL_S = 0.005
+POLL_S = 0.02
 GONE_WITHIN_S = 60.0
 
 
@@ -88,7 +88,7 @@ class Driver:
         while (
             left := [p for p in self.descendants if is_alive(p) and not is_agent(p)]
         ) and time.monotonic() < deadline:
-            time.sleep(10 * POLL_S)
+            time.sleep(5 * POLL_S)
         for process in filter(is_alive, self.descendants):
             process.kill()
         return left
