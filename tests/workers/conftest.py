@@ -46,6 +46,7 @@ class FakeStage:
     log: str
     parameter: int = 0
     block_kind: BlockKind = KIND
+    n_steps: int = 1
     opens: str = ""
 
     @property

@@ -46,6 +46,13 @@ class _TaskInputs:
         place = self._task.finished[stage]
         return self._arrays.read(place.block_name, place.row, quantity)
 
+    @property
+    def failed_steps(self) -> Mapping[str, str]:
+        return {}
+
+    def begin(self, step: str) -> None:
+        pass
+
     def add(self, stage: str, made: Mapping[str, np.ndarray]) -> None:
         self._made[stage] = made
 

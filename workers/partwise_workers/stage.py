@@ -34,6 +34,19 @@ class ShapeInputs(Protocol):
     def array(self, stage: str, quantity: str) -> np.ndarray:
         """One array that an earlier stage made of this shape."""
 
+    @property
+    def failed_steps(self) -> Mapping[str, str]:
+        """Steps of this stage that ended its process on earlier tries of this shape, each with why, in order.
+
+        Whoever runs the stage again skips them, and says so in the summary.
+        """
+
+    def begin(self, step: str) -> None:
+        """Says which of its steps the stage is in from now on. For stages with `n_steps` > 1 only.
+
+        The name is made of letters, digits, `.`, `_`, `-` and spaces, and is the same on every try.
+        """
+
 
 RunStage: TypeAlias = Callable[[ShapeInputs], StageResult]
 """Raises whatever is wrong with the shape; that costs the shape, never the run."""
@@ -55,6 +68,13 @@ class Stage(Protocol):
     @property
     def identity(self) -> Mapping[str, object]:
         """Code version and parameters, JSON-able: all that shapes the result besides what is read."""
+
+    @property
+    def n_steps(self) -> int:
+        """Ways that the stage may try one after the other, each announced by `ShapeInputs.begin`; 1 without steps.
+
+        A step that ends the process is passed over on the next try, so that a stage gets a try for each.
+        """
 
     def open(self, arrays: ArrayStore) -> AbstractContextManager[RunStage]:
         """What costs much to make (renderer, model) is made once in each actor and closed when the actor ends.

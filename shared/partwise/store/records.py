@@ -60,6 +60,15 @@ class RunStatus(StrEnum):
     FAILED = "failed"
 
 
+class FailureKind(StrEnum):
+    """What ended a stage that failed. On record as `kind` in the failure's detail."""
+
+    ERROR = "error"  # it raised: the shape was refused, or nobody foresaw what happened
+    DEADLINE = "deadline"
+    MEMORY = "memory"
+    CRASH = "crash"  # its process died by itself
+
+
 @dataclass(frozen=True, slots=True)
 class Collection:
     """A set of shapes that share a part schema. `settings` is JSON, such as {"upright": true, "up": "y"}."""

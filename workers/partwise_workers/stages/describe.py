@@ -37,6 +37,10 @@ class DescribeStage:
         return FEATURES
 
     @property
+    def n_steps(self) -> int:
+        return 1
+
+    @property
     def identity(self) -> Mapping[str, object]:
         parameters = asdict(self.parameters)
         del parameters["light_field"]["renderer"]

@@ -46,6 +46,10 @@ class EvaluateStage:
         return EVALUATION
 
     @property
+    def n_steps(self) -> int:
+        return 1
+
+    @property
     def identity(self) -> Mapping[str, object]:
         return {"version": 1, "weights": self.model.weights_key}
 

@@ -42,6 +42,10 @@ class MeshStage:
         return MESH
 
     @property
+    def n_steps(self) -> int:
+        return 1
+
+    @property
     def identity(self) -> Mapping[str, object]:
         return {"version": 1, **asdict(self.config)}
 

@@ -38,6 +38,10 @@ class RefineStage:
         return REFINEMENT
 
     @property
+    def n_steps(self) -> int:
+        return 1
+
+    @property
     def identity(self) -> Mapping[str, object]:
         return {"version": 1, **asdict(self.parameters)}
 
