@@ -65,6 +65,10 @@ class CollectionCatalog(Protocol):
         """Every collection, by name."""
         ...
 
+    def update_collection_settings(self, collection_id: int, settings: Mapping[str, Any]) -> Collection:
+        """Set the keys given, leave the others, and put the change on the audit trail."""
+        ...
+
     def parts(self, collection_id: int, version: int | None = None) -> PartSchema:
         """The part schema, the current version unless another is named."""
         ...

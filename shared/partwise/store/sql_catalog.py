@@ -59,6 +59,10 @@ class SqlCatalog:
         with reading(self._engine) as connection:
             return collections.list_collections(connection)
 
+    def update_collection_settings(self, collection_id: int, settings: Mapping[str, Any]) -> r.Collection:
+        with writing(self._engine) as connection:
+            return collections.update_settings(connection, collection_id, settings, self._clock())
+
     def parts(self, collection_id: int, version: int | None = None) -> PartSchema:
         with reading(self._engine) as connection:
             return collections.parts(connection, collection_id, version)

@@ -1,6 +1,7 @@
 """Collections, their versioned part schemas, people, and the audit trail."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
@@ -53,6 +54,21 @@ def get_collection(connection: Connection, name: str) -> Collection:
 
 def list_collections(connection: Connection) -> Sequence[Collection]:
     return [_collection(row) for row in connection.execute(select(t.collection).order_by(t.collection.c.name))]
+
+
+def update_settings(
+    connection: Connection, collection_id: int, settings: Mapping[str, Any], now: datetime
+) -> Collection:
+    schema_version(connection, collection_id, for_update=True)
+    is_it = t.collection.c.id == collection_id
+    before = _collection(connection.execute(select(t.collection).where(is_it)).one())
+    changed = {key: value for key, value in settings.items() if before.settings.get(key) != value}
+    after = {**before.settings, **changed}
+    if changed:
+        connection.execute(update(t.collection).where(is_it).values(settings=after))
+        was = {key: before.settings.get(key) for key in changed}
+        append_audit(connection, "operator", "change settings", before.name, {"from": was, "to": changed}, now)
+    return replace(before, settings=after)
 
 
 def _collection(row: Row[Any]) -> Collection:

@@ -37,6 +37,23 @@ class CollectionConformance:
         with raises(NotFoundError, "sofas", "chairs"):
             catalog.get_collection("sofas")
 
+    def test_settings_given_are_changed_and_the_others_stay(self, catalog: Catalog) -> None:
+        made = catalog.create_collection("chairs", ["seat"], {"up": "y", "working_faces": 10_000})
+        changed = catalog.update_collection_settings(made.id, {"working_faces": 20_000, "remesh": "never"})
+        assert changed.settings == {"up": "y", "working_faces": 20_000, "remesh": "never"}
+        assert catalog.get_collection("chairs") == changed
+
+    def test_changed_settings_are_on_the_audit_trail(self, catalog: Catalog) -> None:
+        made = catalog.create_collection("chairs", ["seat"], {"up": "y"})
+        for up in ("z", "z"):
+            catalog.update_collection_settings(made.id, {"up": up})
+        (entry,) = [entry for entry in catalog.audit() if entry.action == "change settings"]
+        assert (entry.subject, entry.detail) == ("chairs", {"from": {"up": "y"}, "to": {"up": "z"}})
+
+    def test_settings_of_an_unknown_collection_are_refused(self, catalog: Catalog) -> None:
+        with raises(NotFoundError, "99"):
+            catalog.update_collection_settings(99, {"up": "z"})
+
     def test_unknown_collection_id_is_refused(self, catalog: Catalog) -> None:
         with raises(NotFoundError, "99"):
             catalog.parts(99)
