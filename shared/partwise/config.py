@@ -8,12 +8,13 @@ import difflib
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from partwise.errors import ConfigError, ParameterError
 from partwise.features.parameters import DescribeParameters
+from partwise.remesh.parameters import RemeshParameters
 from partwise.segmentation.parameters import RefinementParameters
 
 CONFIG_FILE = "partwise.toml"
@@ -35,32 +36,74 @@ class StoresConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class StageLimits:
+    """What one stage may take of one shape before its process is killed.
+
+    deadline_s : seconds. memory_gb : resident memory of the process, 10^9 bytes, libraries and models included.
+    """
+
+    deadline_s: float = 120.0
+    memory_gb: float = 4.0
+
+    def __post_init__(self) -> None:
+        _require(self.deadline_s > 0, "deadline_s", self.deadline_s, "more than 0")
+        _require(self.memory_gb > 0, "memory_gb", self.memory_gb, "more than 0")
+
+
+@dataclass(frozen=True, slots=True)
+class RemeshLimits(StageLimits):
+    """Of stage `remesh`: fine alpha wraps of large soups take long."""
+
+    deadline_s: float = 300.0
+
+
+@dataclass(frozen=True, slots=True)
+class DescribeLimits(StageLimits):
+    """Of stage `describe`: a mesh of `max_faces` faces fits."""
+
+    deadline_s: float = 600.0
+
+
+@dataclass(frozen=True, slots=True)
+class LimitsConfig:
+    """Limits by stage."""
+
+    mesh: StageLimits = field(default_factory=StageLimits)
+    remesh: RemeshLimits = field(default_factory=RemeshLimits)
+    describe: DescribeLimits = field(default_factory=DescribeLimits)
+    evaluate: StageLimits = field(default_factory=StageLimits)
+    refine: StageLimits = field(default_factory=StageLimits)
+
+
+@dataclass(frozen=True, slots=True)
 class WorkersConfig:
     """How work is spread over Ray.
 
     n_actors : processes that work on one shape each; 0 means one a core.
-    deadline_s : seconds that one shape may take before its process is killed.
-    max_attempts : tries before a shape that kills or outlasts its process is given up.
+    max_attempts : tries of a stage, or of each of its steps, whose process dies by itself.
+    recycle_after : shapes after which a process is ended and replaced.
     block_shapes : shapes packed into one block of arrays.
+    limits : what each stage may take of a shape.
     """
 
     n_actors: int = 0
-    deadline_s: float = 600.0
     max_attempts: int = 2
+    recycle_after: int = 200
     block_shapes: int = 64
+    limits: LimitsConfig = field(default_factory=LimitsConfig)
 
     def __post_init__(self) -> None:
         _require(self.n_actors >= 0, "n_actors", self.n_actors, "0 (one a core) or more")
-        _require(self.deadline_s > 0, "deadline_s", self.deadline_s, "more than 0")
         _require(self.max_attempts >= 1, "max_attempts", self.max_attempts, "1 or more")
+        _require(self.recycle_after >= 1, "recycle_after", self.recycle_after, "1 or more")
         _require(1 <= self.block_shapes <= 4096, "block_shapes", self.block_shapes, "1 to 4096")
 
 
 @dataclass(frozen=True, slots=True)
 class MeshConfig:
-    """What a mesh must be like to be described as it is. `max_faces` bounds the time and memory of describing it."""
+    """Which files are taken. `max_faces` bounds the time and memory of reading and remeshing one."""
 
-    max_faces: int = 100_000
+    max_faces: int = 1_000_000
 
     def __post_init__(self) -> None:
         _require(self.max_faces >= 4, "max_faces", self.max_faces, "4 or more")
@@ -102,6 +145,7 @@ class Config:
     stores: StoresConfig = field(default_factory=StoresConfig)
     workers: WorkersConfig = field(default_factory=WorkersConfig)
     mesh: MeshConfig = field(default_factory=MeshConfig)
+    remesh: RemeshParameters = field(default_factory=RemeshParameters)
     describe: DescribeParameters = field(default_factory=DescribeParameters)
     train: TrainConfig = field(default_factory=TrainConfig)
     refine: RefinementParameters = field(default_factory=RefinementParameters)
@@ -155,11 +199,18 @@ def _parse(kind: type[T], table: Mapping[str, Any], file: str, section: str) -> 
                 raise ConfigError(f"{place} {key} must be a section but is {value!r}; write it as [{inner}]")
             values[key] = _parse(hints[key], value, file, inner)
         else:
-            values[key] = _value(hints[key], value, f"{place} {key}")
+            values[key] = _value(hints[key], value, file, section, key)
+    missing = [each.name for each in fields(kind) if _is_required(each) and each.name not in values]  # type: ignore[arg-type] # as above
+    if missing:
+        raise ConfigError(f"{place} {missing[0]} must be given but is not; add {missing[0]} = …")
     try:
         return kind(**values)
     except ParameterError as error:
         raise ConfigError(f"{place} {error}") from error
+
+
+def _is_required(each: Field[Any]) -> bool:
+    return each.default is MISSING and each.default_factory is MISSING
 
 
 def _unknown(key: str, value: object, known: list[str]) -> str:
@@ -169,16 +220,33 @@ def _unknown(key: str, value: object, known: list[str]) -> str:
     return f"{what} {key} (= {value!r}) must be a known one; {hint}"
 
 
-def _value(kind: Any, value: Any, where: str) -> Any:
+def _value(kind: Any, value: Any, file: str, section: str, key: str) -> Any:
+    where = f"{file}: [{section}] {key}" if section else f"{file}: {key}"
     if get_origin(kind) is Literal:
         if value not in get_args(kind):
             raise ConfigError(f"{where} must be one of {', '.join(get_args(kind))} but is {value!r}; correct it")
         return value
+    if get_origin(kind) is tuple:
+        return _values(get_args(kind)[0], value, file, section, key)
     if kind is float and type(value) is int:
         return float(value)
     if type(value) is not kind:
         raise ConfigError(f"{where} must be {_TYPE_NAMES[kind]} but is {value!r}; correct it")
     return value
+
+
+def _values(kind: Any, value: Any, file: str, section: str, key: str) -> tuple[Any, ...]:
+    """A tuple of a TOML array; where `kind` is a dataclass, of an array of tables."""
+    if not isinstance(value, list):
+        raise ConfigError(f"{file}: [{section}] {key} must be an array but is {value!r}; put it in [ ]")
+    holds_tables = is_dataclass(kind)
+    if not holds_tables:
+        return tuple(_value(kind, item, file, section, f"{key}[{n}]") for n, item in enumerate(value))
+    for n, item in enumerate(value):
+        if not isinstance(item, dict):
+            form = ", ".join(f"{each.name} = …" for each in fields(kind))
+            raise ConfigError(f"{file}: [{section}] {key}[{n}] must be {{ {form} }} but is {item!r}; correct it")
+    return tuple(_parse(kind, item, file, f"{section}.{key}[{n}]") for n, item in enumerate(value))
 
 
 def _require(holds: bool, name: str, value: object, rule: str) -> None:

@@ -3,6 +3,9 @@
 Each class also derives from the builtin that fits, so that callers who know nothing of Partwise catch it too.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 
 class PartwiseError(Exception):
     """Anything Partwise refuses to do. The command line prints it as one line and exits non-zero."""
@@ -14,6 +17,14 @@ class MeshError(PartwiseError, ValueError):
 
 class DegenerateMeshError(MeshError):
     """A mesh is too flat, small or empty for what was asked: no area, a single point."""
+
+
+class StageRefusedError(MeshError):
+    """A stage tried what it could and refuses the shape. detail : JSON-able, what was tried, for the record."""
+
+    def __init__(self, message: str, detail: Mapping[str, Any] | None = None) -> None:
+        super().__init__(message)
+        self.detail: Mapping[str, Any] = detail or {}
 
 
 class FileFormatError(PartwiseError, ValueError):

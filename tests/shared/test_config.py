@@ -24,6 +24,7 @@ from partwise.config import (
 )
 from partwise.errors import ConfigError, ParameterError
 from partwise.learning.recipe import PRESETS, Recipe
+from partwise.remesh.parameters import AlphaWrap, ImplicitContour
 from partwise.testing.expect import raises
 from partwise.workspace.workspace import INITIAL_CONFIG
 
@@ -58,8 +59,20 @@ def test_values_are_read(file: Path) -> None:
 
 
 def test_a_whole_number_will_do_for_a_number(file: Path) -> None:
-    deadline = _read(file, "[workers]\ndeadline_s = 60\n").workers.deadline_s
+    deadline = _read(file, "[workers.limits.mesh]\ndeadline_s = 60\n").workers.limits.mesh.deadline_s
     assert (deadline, type(deadline)) == (60.0, float)
+
+
+def test_arrays_of_values_and_of_tables_are_read(file: Path) -> None:
+    text = "[remesh]\nlevels = [8_000, 2_000]\ncontours = [{ n_cells = 32 }, { n_cells = 24, offset_cells = 2 }]\n"
+    remesh = _read(file, text + "[[remesh.wraps]]\nalpha_percent = 1\noffset_percent = 0.5\n").remesh
+    assert remesh.levels == (8_000, 2_000)
+    assert remesh.contours == (ImplicitContour(32), ImplicitContour(24, 2.0))
+    assert remesh.wraps == (AlphaWrap(1.0, 0.5),)
+
+
+def test_an_empty_array_of_attempts_leaves_the_others(file: Path) -> None:
+    assert _read(file, "[remesh]\nwraps = []\n").remesh.attempts == (ImplicitContour(128), ImplicitContour(64))
 
 
 def test_the_environment_wins_over_the_file(file: Path) -> None:
@@ -120,19 +133,32 @@ def test_what_is_not_utf8_is_named(file: Path) -> None:
         ('[workers]\nn_actors = "3"\n', ("[workers] n_actors must be a whole number but is '3'",)),
         ("[workers]\nn_actors = 3.0\n", ("[workers] n_actors must be a whole number but is 3.0",)),
         ("[workers]\nn_actors = true\n", ("[workers] n_actors must be a whole number but is True",)),
-        ("[workers]\ndeadline_s = true\n", ("[workers] deadline_s must be a number but is True",)),
-        ("[workers]\ndeadline_s = 2020-01-01\n", ("[workers] deadline_s must be a number",)),
+        (
+            "[workers.limits.mesh]\ndeadline_s = true\n",
+            ("[workers.limits.mesh] deadline_s must be a number but is True",),
+        ),
+        ("[workers.limits.mesh]\ndeadline_s = 2020-01-01\n", ("[workers.limits.mesh] deadline_s must be a number",)),
         ("[stores]\narray_url = 1\n", ("[stores] array_url must be a string in quotes but is 1",)),
         ("[train]\ntune_smoothness = 1\n", ("[train] tune_smoothness must be true or false but is 1",)),
         ('[train]\npreset = "papre"\n', ("[train] preset must be one of paper but is 'papre'",)),
         ("[train]\npreset = [1]\n", ("[train] preset must be one of paper but is [1]",)),
         ('[describe.light_field]\nrenderer = "x"\n', ("[describe.light_field] renderer must be one of auto, gl",)),
+        ("[remesh]\nlevels = 5000\n", ("[remesh] levels must be an array but is 5000", "put it in [ ]")),
+        ("[remesh]\nlevels = [5000, '1']\n", ("[remesh] levels[1] must be a whole number but is '1'",)),
+        ("[remesh]\ncontours = [64]\n", ("[remesh] contours[0] must be { n_cells = …, offset_cells = … } but is 64",)),
+        ("[remesh]\nwraps = [{ alpha = 1 }]\n", ("[remesh.wraps[0]] key alpha (= 1)", "known are alpha_percent")),
+        ("[remesh]\nwraps = [{ alpha_percent = 1 }]\n", ("[remesh.wraps[0]] offset_percent must be given",)),
         # ranges
         ('[stores]\ndatabase_url = ""\n', ("[stores] database_url", "''")),
+        ("[remesh]\nlevels = [5_000, 10_000]\n", ("[remesh] levels must descend but are (5000, 10000)",)),
+        ("[remesh]\nwraps = []\ncontours = []\n", ("[remesh] a ladder needs an attempt",)),
+        ("[[remesh.wraps]]\nalpha_percent = 1\noffset_percent = 60\n", ("[remesh.wraps[0]] offset_percent must be",)),
+        ("[remesh]\ncontours = [{ n_cells = 128 }, { n_cells = 8 }]\n", ("[remesh.contours[1]] n_cells must be 16",)),
         ('[stores]\narray_url = " "\n', ("[stores] array_url", "' '")),
         ("[workers]\nn_actors = -1\n", ("[workers] n_actors must be 0 (one a core) or more but is -1",)),
-        ("[workers]\ndeadline_s = 0\n", ("[workers] deadline_s must be more than 0 but is 0.0",)),
-        ("[workers]\ndeadline_s = nan\n", ("[workers] deadline_s must be more than 0 but is nan",)),
+        ("[workers.limits.describe]\ndeadline_s = 0\n", ("[workers.limits.describe] deadline_s must be more than 0",)),
+        ("[workers.limits.remesh]\nmemory_gb = nan\n", ("memory_gb must be more than 0 but is nan",)),
+        ("[workers]\nrecycle_after = 0\n", ("[workers] recycle_after must be 1 or more but is 0",)),
         ("[workers]\nmax_attempts = 0\n", ("[workers] max_attempts must be 1 or more but is 0",)),
         ("[workers]\nblock_shapes = 0\n", ("[workers] block_shapes must be 1 to 4096 but is 0",)),
         ("[workers]\nblock_shapes = 4097\n", ("[workers] block_shapes must be 1 to 4096 but is 4097",)),
@@ -236,13 +262,20 @@ def test_every_key_is_documented_and_nothing_else() -> None:
 
 def test_documented_defaults_are_the_defaults() -> None:
     documented = {(section, key): tomllib.loads(f"value = {text}")["value"] for section, key, text in _documented()}
-    assert documented == {(section, key): default for section, key, default in _leaves()}
+    assert documented == {(section, key): _as_in_toml(default) for section, key, default in _leaves()}
+
+
+def _as_in_toml(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return dataclasses.asdict(value)
+    return [_as_in_toml(item) for item in value] if isinstance(value, tuple) else value
 
 
 def test_the_documented_example_can_be_read(file: Path) -> None:
-    (example,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
-    config = _read(file, example)
+    first, second = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
+    config = _read(file, first)
     assert (config.stores.array_url, config.workers.n_actors) == ("s3://lab-shapes/chairs", 6)
+    assert _read(file, second).remesh.attempts == (AlphaWrap(0.3, 0.2), ImplicitContour(96))
 
 
 @pytest.mark.parametrize("variable", [DATABASE_VARIABLE, STORE_VARIABLE])
@@ -251,14 +284,25 @@ def test_the_variables_are_documented(variable: str) -> None:
 
 
 def _attributes_read() -> set[str]:
-    """Names of all attributes that the packages read, outside the modules that define the configuration."""
+    """Names of all attributes that the packages read; where the configuration is defined, only what properties read."""
     names: set[str] = set()
     for package in ("shared/partwise", "workers/partwise_workers", "services"):
         for path in (REPOSITORY / package).rglob("*.py"):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
             if path.name not in DEFINING:
-                tree = ast.parse(path.read_text(encoding="utf-8"))
-                names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+                names |= _attributes_in(tree)
+            else:
+                properties = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
+                names |= {name for each in properties if _is_property(each) for name in _attributes_in(each)}
     return names
+
+
+def _attributes_in(tree: ast.AST) -> set[str]:
+    return {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+
+
+def _is_property(function: ast.FunctionDef) -> bool:
+    return any(isinstance(each, ast.Name) and each.id == "property" for each in function.decorator_list)
 
 
 def test_every_key_is_read_somewhere() -> None:

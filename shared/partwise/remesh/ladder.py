@@ -147,7 +147,7 @@ class Ladder:
             return AttemptResult(_refused(used, started, refused, raw.n_faces, outer.dropped_area), None)
         verdict = judge(outer.mesh, self._light_field, self._renderer, self._parameters.max_distance)
         attempt = Attempt(
-            _method(used),
+            method_name(used),
             asdict(used),
             _since(started),
             outer.mesh.n_faces,
@@ -214,14 +214,15 @@ def collect(
     return RemeshResult(surface, is_as_is, tuple(result.attempt for result in results), levels)
 
 
-def _method(attempt: AttemptParameters) -> str:
+def method_name(attempt: AttemptParameters) -> str:
+    """What an attempt with such parameters is called on record."""
     return "alpha wrap" if isinstance(attempt, AlphaWrap) else "implicit contour"
 
 
 def _refused(
     attempt: AttemptParameters, started: float, why: str, n_faces: int | None = None, dropped_area: float = 0.0
 ) -> Attempt:
-    return Attempt(_method(attempt), asdict(attempt), _since(started), n_faces, dropped_area, None, why)
+    return Attempt(method_name(attempt), asdict(attempt), _since(started), n_faces, dropped_area, None, why)
 
 
 def _since(started: float) -> float:

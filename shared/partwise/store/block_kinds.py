@@ -12,6 +12,18 @@ MESH = BlockKind(
     (Quantity("vertices", Domain.VERTEX, "float32", (3,)), Quantity("faces", Domain.FACE, "uint32", (3,))),
 )
 
+REMESH = BlockKind(
+    "remesh",
+    (
+        *MESH.quantities,
+        Quantity("level_vertices", Domain.LEVEL_VERTEX, "float32", (3,)),
+        Quantity("level_faces", Domain.LEVEL_FACE, "uint32", (3,)),
+        Quantity("level_sizes", Domain.SHAPE, "uint32", (None, 3)),
+        Quantity("working_level", Domain.SHAPE, "uint32"),
+    ),
+)
+"""The working mesh, and its other resolutions one after the other: see `partwise.store.levels`."""
+
 FEATURES = BlockKind(
     "features",
     (

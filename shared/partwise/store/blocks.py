@@ -9,11 +9,21 @@ from partwise.errors import ParameterError
 
 
 class Domain(StrEnum):
-    """What the rows of a quantity are: one per face, one per vertex, or a single one for the shape."""
+    """What the rows of a quantity are: one per face, one per vertex, or a single one for the shape.
+
+    Levels are further meshes of the shape, one after the other; there may be none.
+    """
 
     FACE = "face"
     VERTEX = "vertex"
     SHAPE = "shape"
+    LEVEL_FACE = "level_face"
+    LEVEL_VERTEX = "level_vertex"
+
+    @property
+    def may_be_empty(self) -> bool:
+        """Whether a shape may have no rows."""
+        return self in (Domain.LEVEL_FACE, Domain.LEVEL_VERTEX)
 
 
 @dataclass(frozen=True, slots=True)

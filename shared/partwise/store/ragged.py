@@ -75,7 +75,8 @@ def _ragged(quantity: Quantity, arrays: Sequence[np.ndarray]) -> Ragged:
         for k, extent in enumerate(quantity.width)
     )
     for i, array in enumerate(rows):
-        if array.dtype != np.dtype(quantity.dtype) or array.ndim < 1 or array.shape[1:] != width or array.size == 0:
+        is_empty = array.size == 0 and not quantity.domain.may_be_empty
+        if array.dtype != np.dtype(quantity.dtype) or array.ndim < 1 or array.shape[1:] != width or is_empty:
             raise ParameterError(
                 f"{quantity.name} must be {quantity.dtype} rows of shape {width} but that of shape {i} is "
                 f"{array.dtype} of shape {array.shape}"
