@@ -19,6 +19,8 @@ _COLOUR = re.compile(r"#[0-9A-Fa-f]{6}")
 class Part:
     """One part: id in 1 … 65,535, name (1–64 printable characters), colour `#RRGGBB`, and a gloss for annotators.
 
+    parent_id : the part that it is a part of, None at the top.
+
     Raises
     ------
     LabelError : an id out of range, a name that is empty, too long or padded, a malformed colour.
@@ -28,6 +30,7 @@ class Part:
     name: str
     colour: str
     gloss: str = ""
+    parent_id: int | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.id <= MAX_PART_ID:
@@ -56,7 +59,7 @@ class PartSchema:
 
     Raises
     ------
-    LabelError : version below 1, an id or a name twice.
+    LabelError : version below 1, an id or a name twice, a parent that is not in it, a part that is its own ancestor.
     """
 
     version: int
@@ -69,6 +72,8 @@ class PartSchema:
             twice = sorted({value for value in values if values.count(value) > 1})
             if twice:
                 raise LabelError(f"each part {what} must occur once but these occur twice: {', '.join(twice)}")
+        for part in self.parts:
+            self.ancestors(part.id)
 
     @property
     def ids(self) -> tuple[int, ...]:
@@ -90,6 +95,23 @@ class PartSchema:
                 return part
         known = ", ".join(f"{part.id} ({part.name})" for part in self.parts)
         raise LabelError(f"part id {part_id} is not in schema version {self.version}; it has {known or 'no parts'}")
+
+    def ancestors(self, part_id: int) -> tuple[int, ...]:
+        """Ids of the part's parent, its parent's parent and so on up to the top; empty for a part at the top.
+
+        Raises
+        ------
+        LabelError : no part of this version has the id, or, when the schema is made, the parents go round in a circle.
+        """
+        above: list[int] = []
+        parent_id = self.part(part_id).parent_id
+        while parent_id is not None:
+            if parent_id == part_id or parent_id in above:
+                names = " → ".join(self.part(each).name for each in (part_id, *above, parent_id))
+                raise LabelError(f"a part must not be its own ancestor but parents go {names}; take one of them off")
+            above.append(parent_id)
+            parent_id = self.part(parent_id).parent_id
+        return tuple(above)
 
     def id_of(self, name: str) -> int:
         """The id of the part called `name`, exactly.

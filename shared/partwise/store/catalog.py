@@ -42,6 +42,7 @@ from partwise.store.records import (
     StageCount,
     StageRun,
 )
+from partwise.store.reviews import NewReview, Review
 
 SHOWN_KINDS = (RevisionKind.HUMAN, RevisionKind.IMPORTED)
 """Kinds of revision that may be shown and trained on."""
@@ -73,8 +74,18 @@ class CollectionCatalog(Protocol):
         """The part schema, the current version unless another is named."""
         ...
 
-    def add_part(self, collection_id: int, name: str, colour: str | None = None, gloss: str = "") -> PartSchema:
-        """Add a part under the next free id and make the next schema version. `ConflictError` if the name is taken."""
+    def add_part(
+        self,
+        collection_id: int,
+        name: str,
+        colour: str | None = None,
+        gloss: str = "",
+        parent_id: int | None = None,
+    ) -> PartSchema:
+        """Add a part under the next free id and make the next schema version.
+
+        Raises `ConflictError` if the name is taken, `LabelError` for a parent that is not in the schema.
+        """
         ...
 
     def update_part(
@@ -85,12 +96,21 @@ class CollectionCatalog(Protocol):
         name: str | None = None,
         colour: str | None = None,
         gloss: str | None = None,
+        parent_id: int | None = None,
     ) -> PartSchema:
-        """Rename, recolour or explain a part; the schema version stays. `ConflictError` if the name is taken."""
+        """Rename, recolour or explain a part or put it below another; the schema version stays.
+
+        What is None stays as it is; a `parent_id` of 0 puts the part at the top. Raises `ConflictError` if the name is
+        taken, `LabelError` for a parent that is not in the schema or is below the part itself.
+        """
         ...
 
     def remove_part(self, collection_id: int, part_id: int) -> PartSchema:
-        """Leave a part out of the next schema version. Its id is never used again."""
+        """Leave a part out of the next schema version. Its id is never used again.
+
+        Raises `ConflictError` for a part that other parts are below, or that the newest human or imported labels of any
+        shape use; the message says of how many.
+        """
         ...
 
     def add_person(self, name: str) -> Person:
@@ -136,7 +156,11 @@ class ShapeCatalog(Protocol):
     def mesh(self, shape_id: int, mesh_hash: str) -> Mesh: ...
 
     def meshes(self, shape_ids: SizedIterable[int]) -> Mapping[int, Mesh]:
-        """The newest mesh of each shape; shapes without one are left out."""
+        """The present working mesh of each shape; shapes without one are left out."""
+        ...
+
+    def original_meshes(self, shape_ids: SizedIterable[int]) -> Mapping[int, Mesh]:
+        """The mesh of each shape's file as it is; shapes of which none is on record are left out."""
         ...
 
     def keep_mesh(self, mesh_hash: str, kept_key: str) -> None:
@@ -221,11 +245,16 @@ class StageCatalog(Protocol):
 class LabelCatalog(Protocol):
     """Label revisions, which nothing ever changes or deletes."""
 
-    def add_revision(self, revision: NewRevision) -> LabelRevision:
-        """Commit labels, and an audit entry with them.
+    def add_revision(self, revision: NewRevision, review: NewReview | None = None) -> LabelRevision:
+        """Commit labels, and with them an audit entry and, if given, a review that keeps them out of training.
+
+        Human or imported labels resolve the open reviews of those whose place they take. Moved labels take over the
+        reviews that have nothing to do with the move.
 
         Raises `LabelError` if the mesh is not one of the shape's, there is not one label per face, an id is not in the
-        schema version named, that version does not exist, or the parent is not a revision of the same shape.
+        schema version named, that version does not exist, the parent is not a revision of the same shape, or labels
+        that are never shown are to be reviewed. Raises `ConflictError` for moved labels whose parent is not, or no
+        longer, the newest revision of the shape.
         """
         ...
 
@@ -256,8 +285,34 @@ class LabelCatalog(Protocol):
         kinds: Sequence[RevisionKind] = SHOWN_KINDS,
         after: int = 0,
         limit: int = 1000,
+        leave_out_reviews: bool = False,
     ) -> Sequence[LabelRevision]:
-        """A page of head revisions by shape id: every shape of the collection that has labels of these kinds."""
+        """A page of head revisions by shape id: every shape of the collection that has labels of these kinds.
+
+        `leave_out_reviews` leaves out shapes whose labels wait for someone to look at them.
+        """
+        ...
+
+    def add_review(self, revision_id: int, review: NewReview) -> Review:
+        """Have someone look at labels before they are trained on. An open review of the same reason stays the one.
+
+        Raises `ConflictError` unless the revision is the newest human or imported one, `LabelError` for reference ones.
+        """
+        ...
+
+    def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
+        """A page of the reviews that wait for someone, by review id."""
+        ...
+
+    def reviews(self, shape_id: int) -> Sequence[Review]:
+        """Every review of a shape, open or not, oldest first."""
+        ...
+
+    def accept_review(self, review_id: int, person_id: int) -> Review:
+        """Record that a person found the labels right as they are. `ConflictError` if the review is resolved already.
+
+        Labels that are not right are corrected by committing better ones, which resolves the review.
+        """
         ...
 
 

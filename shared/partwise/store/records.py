@@ -13,11 +13,13 @@ import numpy as np
 from jaxtyping import Integer
 
 from partwise.errors import ParameterError
+from partwise.store.reviews import RevisionOrigin
 
 
 class ShapeState(StrEnum):
     """Where a shape stands, derived by one expression in `partwise.store.sql.state`; the first that holds.
 
+    review : its newest human or imported labels wait for someone to look at them again: they are not trained on.
     confirmed : it has a label revision of kind human or imported.
     ready : its describe stage is done, so that it can be predicted, ranked and annotated.
     failed : a stage failed, and nothing above holds.
@@ -27,6 +29,7 @@ class ShapeState(StrEnum):
     NEW = "new"
     FAILED = "failed"
     READY = "ready"
+    REVIEW = "review"
     CONFIRMED = "confirmed"
 
 
@@ -36,6 +39,17 @@ class RevisionKind(StrEnum):
     HUMAN = "human"
     IMPORTED = "imported"
     REFERENCE = "reference"
+
+
+class MeshRole(StrEnum):
+    """What a mesh is to its shape. One mesh is both where the original was taken as it is.
+
+    original : the ingested file's own faces.
+    working : the surface that is described, predicted and annotated.
+    """
+
+    ORIGINAL = "original"
+    WORKING = "working"
 
 
 class IngestOutcome(StrEnum):
@@ -110,12 +124,16 @@ class NewShape:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
+    """An ingested source. The hashes are those of its present working mesh and of the file's own; None before."""
+
     id: int
     collection_id: int
     source_key: str
     source_hash: str
     source_suffix: str
     ingested_at: datetime
+    mesh_hash: str | None = None
+    original_mesh_hash: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,13 +148,14 @@ class IngestedShape:
 
 @dataclass(frozen=True, slots=True)
 class NewMesh:
-    """A mesh of a shape in row `row` of the block that is being published."""
+    """A mesh of a shape in row `row` of the block that is being published; the shape's present one in that role."""
 
     shape_id: int
     mesh_hash: str
     n_vertices: int
     n_faces: int
     row: int
+    role: MeshRole = MeshRole.WORKING
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +281,10 @@ class Score:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NewRevision:
-    """Labels to commit: (m,) part ids in the face order of the mesh `mesh_hash`, 0 = unlabelled."""
+    """Labels to commit: (m,) part ids in the face order of the mesh `mesh_hash`, 0 = unlabelled.
+
+    origin : of labels that were moved from another mesh, how; then `parent_id` is the newest revision of its kinds.
+    """
 
     shape_id: int
     mesh_hash: str
@@ -271,11 +293,15 @@ class NewRevision:
     schema_version: int
     labels: Integer[np.ndarray, " m"]
     parent_id: int | None = None
+    origin: RevisionOrigin | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class LabelRevision:
-    """An immutable revision without its labels; `sha256` is that of the raw uint16 labels."""
+    """An immutable revision without its labels; `sha256` is that of the raw uint16 labels.
+
+    origin : None for labels as someone made them; else how they were moved to this mesh.
+    """
 
     id: int
     shape_id: int
@@ -287,6 +313,7 @@ class LabelRevision:
     n_faces: int
     sha256: str
     created_at: datetime
+    origin: RevisionOrigin | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,8 @@ from partwise.labels.schema import PartSchema
 from partwise.store import records as r
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.engine import reading, writing
-from partwise.store.sql import blocks, collections, labels, models, shapes, stages
+from partwise.store.reviews import NewReview, Review
+from partwise.store.sql import blocks, collections, labels, models, reviews, shapes, stages
 
 
 def utc_now() -> datetime:
@@ -67,9 +68,16 @@ class SqlCatalog:
         with reading(self._engine) as connection:
             return collections.parts(connection, collection_id, version)
 
-    def add_part(self, collection_id: int, name: str, colour: str | None = None, gloss: str = "") -> PartSchema:
+    def add_part(
+        self,
+        collection_id: int,
+        name: str,
+        colour: str | None = None,
+        gloss: str = "",
+        parent_id: int | None = None,
+    ) -> PartSchema:
         with writing(self._engine) as connection:
-            return collections.add_part(connection, collection_id, name, colour, gloss)
+            return collections.add_part(connection, collection_id, name, colour, gloss, parent_id)
 
     def update_part(
         self,
@@ -79,9 +87,10 @@ class SqlCatalog:
         name: str | None = None,
         colour: str | None = None,
         gloss: str | None = None,
+        parent_id: int | None = None,
     ) -> PartSchema:
         with writing(self._engine) as connection:
-            return collections.update_part(connection, collection_id, part_id, name, colour, gloss)
+            return collections.update_part(connection, collection_id, part_id, name, colour, gloss, parent_id)
 
     def remove_part(self, collection_id: int, part_id: int) -> PartSchema:
         with writing(self._engine) as connection:
@@ -137,7 +146,11 @@ class SqlCatalog:
 
     def meshes(self, shape_ids: SizedIterable[int]) -> Mapping[int, r.Mesh]:
         with reading(self._engine) as connection:
-            return shapes.meshes(connection, shape_ids)
+            return shapes.meshes(connection, shape_ids, r.MeshRole.WORKING)
+
+    def original_meshes(self, shape_ids: SizedIterable[int]) -> Mapping[int, r.Mesh]:
+        with reading(self._engine) as connection:
+            return shapes.meshes(connection, shape_ids, r.MeshRole.ORIGINAL)
 
     def keep_mesh(self, mesh_hash: str, kept_key: str) -> None:
         with writing(self._engine) as connection:
@@ -209,9 +222,9 @@ class SqlCatalog:
 
     # Labels
 
-    def add_revision(self, revision: r.NewRevision) -> r.LabelRevision:
+    def add_revision(self, revision: r.NewRevision, review: NewReview | None = None) -> r.LabelRevision:
         with writing(self._engine) as connection:
-            return labels.add_revision(connection, revision, self._clock())
+            return labels.add_revision(connection, revision, review, self._clock())
 
     def revision(self, revision_id: int) -> r.LabelRevision:
         with reading(self._engine) as connection:
@@ -242,9 +255,28 @@ class SqlCatalog:
         kinds: Sequence[r.RevisionKind] = SHOWN_KINDS,
         after: int = 0,
         limit: int = 1000,
+        leave_out_reviews: bool = False,
     ) -> Sequence[r.LabelRevision]:
         with reading(self._engine) as connection:
-            return labels.labelled_shapes(connection, collection_id, kinds, after, limit)
+            return labels.labelled_shapes(
+                connection, collection_id, kinds, after, limit, leave_out_reviews=leave_out_reviews
+            )
+
+    def add_review(self, revision_id: int, review: NewReview) -> Review:
+        with writing(self._engine) as connection:
+            return reviews.add_review(connection, revision_id, review, self._clock())
+
+    def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
+        with reading(self._engine) as connection:
+            return reviews.open_reviews(connection, collection_id, after, limit)
+
+    def reviews(self, shape_id: int) -> Sequence[Review]:
+        with reading(self._engine) as connection:
+            return reviews.reviews(connection, shape_id)
+
+    def accept_review(self, review_id: int, person_id: int) -> Review:
+        with writing(self._engine) as connection:
+            return reviews.accept_review(connection, review_id, person_id, self._clock())
 
     # Models, scores, selection, embedding
 

@@ -73,7 +73,9 @@ part = Table(
     Column("ordinal", Integer, nullable=False),
     Column("schema_version_added", Integer, nullable=False),
     Column("schema_version_removed", Integer),
+    Column("parent_id", Integer),
     CheckConstraint("id >= 1 AND id <= 65535", name="id"),
+    ForeignKeyConstraint(["collection_id", "parent_id"], ["part.collection_id", "part.id"]),
 )
 Index(  # a removed part's name may be given to a new part
     "uq_part_current_name",
@@ -101,6 +103,8 @@ shape = Table(
     Column("source_hash", String(64), nullable=False),
     Column("source_suffix", String(16), nullable=False),
     Column("ingested_at", UtcDateTime, nullable=False),
+    Column("mesh_hash", ForeignKey("mesh.hash")),
+    Column("original_mesh_hash", ForeignKey("mesh.hash")),
     UniqueConstraint("collection_id", "source_key"),
     Index(None, "collection_id", "id"),
 )
@@ -188,10 +192,47 @@ label_revision = Table(  # triggers refuse UPDATE and DELETE
     Column("n_faces", Integer, nullable=False),
     Column("sha256", String(64), nullable=False),
     Column("created_at", UtcDateTime, nullable=False),
+    Column("origin", JSON(none_as_null=True)),
     ForeignKeyConstraint(["shape_id", "mesh_hash"], ["shape_mesh.shape_id", "shape_mesh.mesh_hash"]),
     CheckConstraint("kind IN ('human', 'imported', 'reference')", name="kind"),
     Index(None, "shape_id", "kind", "id"),
     Index(None, "mesh_hash"),
+)
+
+label_part = Table(  # which parts a revision uses, so that a part in use is found without unpacking any labels
+    "label_part",
+    metadata,
+    Column("collection_id", Integer, primary_key=True, autoincrement=False),
+    Column("part_id", Integer, primary_key=True, autoincrement=False),
+    Column("revision_id", ForeignKey("label_revision.id"), primary_key=True, autoincrement=False),
+    ForeignKeyConstraint(["collection_id", "part_id"], ["part.collection_id", "part.id"]),
+)
+
+review = Table(  # open ones are of newest revisions only: what takes their place resolves them
+    "review",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("collection_id", ForeignKey("collection.id"), nullable=False),
+    Column("shape_id", ForeignKey("shape.id"), nullable=False, index=True),
+    Column("revision_id", ForeignKey("label_revision.id"), nullable=False),
+    Column("reason", String(16), nullable=False),
+    Column("detail", JSON, nullable=False),
+    Column("created_at", UtcDateTime, nullable=False),
+    Column("resolved_at", UtcDateTime),
+    Column("resolved_by", ForeignKey("person.id")),
+    Column("outcome", String(16)),
+    CheckConstraint("(resolved_at IS NULL) = (outcome IS NULL)", name="resolved_has_outcome"),
+)
+_IS_OPEN = text("resolved_at IS NULL")
+Index(
+    "uq_review_open", review.c.shape_id, review.c.reason, unique=True, sqlite_where=_IS_OPEN, postgresql_where=_IS_OPEN
+)
+Index(
+    "ix_review_open_collection_id",
+    review.c.collection_id,
+    review.c.id,
+    sqlite_where=_IS_OPEN,
+    postgresql_where=_IS_OPEN,
 )
 
 model = Table(

@@ -5,12 +5,13 @@ from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, func, insert, or_, select, update
+from sqlalchemy import Connection, Row, exists, func, insert, or_, select, update
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.labels.palette import default_colour
 from partwise.labels.schema import MAX_PART_ID, Part, PartSchema
 from partwise.store import tables as t
+from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import AuditEntry, Collection, Person
 
 
@@ -41,6 +42,7 @@ def _part_row(collection_id: int, part: Part, version: int) -> dict[str, Any]:
         "ordinal": part.id,
         "schema_version_added": version,
         "schema_version_removed": None,
+        "parent_id": part.parent_id,
     }
 
 
@@ -75,10 +77,17 @@ def _collection(row: Row[Any]) -> Collection:
     return Collection(**row._mapping)
 
 
-def schema_version(connection: Connection, collection_id: int, *, for_update: bool = False) -> int:
-    """The current schema version; `for_update` makes other writers wait until this transaction ends."""
+def schema_version(
+    connection: Connection, collection_id: int, *, for_update: bool = False, for_share: bool = False
+) -> int:
+    """The current schema version.
+
+    `for_update` makes other writers wait until this transaction ends, `for_share` only those that ask for update.
+    """
     query = select(t.collection.c.schema_version).where(t.collection.c.id == collection_id)
-    version = connection.execute(query.with_for_update() if for_update else query).scalar()
+    if for_update or for_share:
+        query = query.with_for_update(read=not for_update)
+    version = connection.execute(query).scalar()
     if version is None:
         raise NotFoundError(f"there is no collection with id {collection_id}")
     return version
@@ -90,60 +99,84 @@ def parts(connection: Connection, collection_id: int, version: int | None = None
     if not 1 <= version <= current:
         raise LabelError(f"the schema version must be 1 to {current} but is {version}; was another collection meant?")
     query = (
-        select(t.part.c.id, t.part.c.name, t.part.c.colour, t.part.c.gloss)
+        select(t.part.c.id, t.part.c.name, t.part.c.colour, t.part.c.gloss, t.part.c.parent_id)
         .where(t.part.c.collection_id == collection_id, t.part.c.schema_version_added <= version)
         .where(or_(t.part.c.schema_version_removed.is_(None), t.part.c.schema_version_removed > version))
         .order_by(t.part.c.ordinal)
     )
-    rows = connection.execute(query).all()
-    return PartSchema(version, _distinct_names([Part(**row._mapping) for row in rows]))
+    found = [Part(**row._mapping) for row in connection.execute(query)]
+    known = {part.id for part in found}
+    found = [part if part.parent_id in known else replace(part, parent_id=None) for part in found]  # an older version's
+    return PartSchema(version, _distinct_names(found))
 
 
 def _distinct_names(parts_of_version: Sequence[Part]) -> tuple[Part, ...]:
     """Parts of an older version that were renamed to a name in use by another get their id behind the name."""
     names = [part.name for part in parts_of_version]
     return tuple(
-        part if names.count(part.name) == 1 else Part(part.id, f"{part.name[:56]} ({part.id})", part.colour, part.gloss)
+        part if names.count(part.name) == 1 else replace(part, name=f"{part.name[:56]} ({part.id})")
         for part in parts_of_version
     )
 
 
-def add_part(connection: Connection, collection_id: int, name: str, colour: str | None, gloss: str) -> PartSchema:
+def add_part(
+    connection: Connection, collection_id: int, name: str, colour: str | None, gloss: str, parent_id: int | None
+) -> PartSchema:
     version = schema_version(connection, collection_id, for_update=True) + 1
     _refuse_taken_name(connection, collection_id, name, None)
     last = connection.execute(select(func.max(t.part.c.id)).where(t.part.c.collection_id == collection_id)).scalar()
     part_id = (last or 0) + 1
     if part_id > MAX_PART_ID:
         raise LabelError(f"a collection can have {MAX_PART_ID} parts in its life and has had them; start another")
-    part = Part(part_id, name, colour or default_colour(part_id), gloss)
+    part = Part(part_id, name, colour or default_colour(part_id), gloss, parent_id)
+    PartSchema(version, (*parts(connection, collection_id).parts, part))  # refuses an unknown parent
     connection.execute(insert(t.part).values(_part_row(collection_id, part, version)))
     _set_version(connection, collection_id, version)
     return parts(connection, collection_id)
 
 
 def update_part(
-    connection: Connection, collection_id: int, part_id: int, name: str | None, colour: str | None, gloss: str | None
+    connection: Connection,
+    collection_id: int,
+    part_id: int,
+    name: str | None,
+    colour: str | None,
+    gloss: str | None,
+    parent_id: int | None,
 ) -> PartSchema:
     schema_version(connection, collection_id, for_update=True)
-    old = parts(connection, collection_id).part(part_id)
+    schema = parts(connection, collection_id)
+    old = schema.part(part_id)
     new = Part(
         part_id,
         old.name if name is None else name,
         old.colour if colour is None else colour,
         old.gloss if gloss is None else gloss,
+        old.parent_id if parent_id is None else parent_id or None,
     )
     _refuse_taken_name(connection, collection_id, new.name, part_id)
+    PartSchema(schema.version, tuple(new if part.id == part_id else part for part in schema.parts))  # refuses a cycle
     connection.execute(
         update(t.part)
         .where(t.part.c.collection_id == collection_id, t.part.c.id == part_id)
-        .values(name=new.name, colour=new.colour, gloss=new.gloss)
+        .values(name=new.name, colour=new.colour, gloss=new.gloss, parent_id=new.parent_id)
     )
     return parts(connection, collection_id)
 
 
 def remove_part(connection: Connection, collection_id: int, part_id: int) -> PartSchema:
     version = schema_version(connection, collection_id, for_update=True) + 1
-    parts(connection, collection_id).part(part_id)  # refuses an unknown or already removed part
+    schema = parts(connection, collection_id)
+    part = schema.part(part_id)  # refuses an unknown or already removed part
+    if children := [child.name for child in schema.parts if child.parent_id == part_id]:
+        raise ConflictError(
+            f"part {part.name!r} has the parts {', '.join(children)} below it; give them another parent first"
+        )
+    if n_shapes := _n_shapes_using(connection, collection_id, part_id):
+        raise ConflictError(
+            f"a part in use is not removed but {part.name!r} is in the labels of {n_shapes:,} "
+            f"{'shape' if n_shapes == 1 else 'shapes'}; label those faces otherwise first"
+        )
     connection.execute(
         update(t.part)
         .where(t.part.c.collection_id == collection_id, t.part.c.id == part_id)
@@ -151,6 +184,25 @@ def remove_part(connection: Connection, collection_id: int, part_id: int) -> Par
     )
     _set_version(connection, collection_id, version)
     return parts(connection, collection_id)
+
+
+def _n_shapes_using(connection: Connection, collection_id: int, part_id: int) -> int:
+    """Shapes whose newest human or imported labels have the part: read from the revisions that ever had it."""
+    newer = t.label_revision.alias("newer")
+    kinds = [kind.value for kind in SHOWN_KINDS]
+    is_outdated = exists().where(
+        newer.c.shape_id == t.label_revision.c.shape_id,
+        newer.c.kind.in_(kinds),
+        newer.c.id > t.label_revision.c.id,
+    )
+    query = (
+        select(func.count())
+        .select_from(t.label_part)
+        .join(t.label_revision, t.label_revision.c.id == t.label_part.c.revision_id)
+        .where(t.label_part.c.collection_id == collection_id, t.label_part.c.part_id == part_id)
+        .where(t.label_revision.c.kind.in_(kinds), ~is_outdated)
+    )
+    return connection.execute(query).scalar_one()
 
 
 def _refuse_taken_name(connection: Connection, collection_id: int, name: str, part_id: int | None) -> None:

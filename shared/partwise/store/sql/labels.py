@@ -2,33 +2,45 @@
 
 from collections.abc import Collection as SizedIterable
 from collections.abc import Sequence
+from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
 import numpy as np
 from jaxtyping import UInt16
-from sqlalchemy import Connection, Row, Select, func, insert, select
+from sqlalchemy import Connection, Row, Select, exists, func, insert, select
 
-from partwise.errors import LabelError, NotFoundError
+from partwise.errors import ConflictError, LabelError, NotFoundError
 from partwise.labels.checks import checked_labels
 from partwise.labels.encoding import EncodedLabels, decode_labels, encode_labels
 from partwise.store import tables as t
+from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import LabelRevision, NewRevision, RevisionKind
-from partwise.store.sql.collections import append_audit, parts
+from partwise.store.reviews import NewReview, RevisionOrigin
+from partwise.store.sql.collections import append_audit, parts, schema_version
 from partwise.store.sql.dialect import batches
+from partwise.store.sql.reviews import MACHINE, add_review, lock_labels, succeed_reviews
 from partwise.store.sql.shapes import refuse_unknown_shapes
+from partwise.unlabelled import NO_PART_ID
 
 _COLUMNS = tuple(column for column in t.label_revision.c if column.name != "labels")  # the blob only when asked for
 
 
-def add_revision(connection: Connection, revision: NewRevision, now: datetime) -> LabelRevision:
+def add_revision(
+    connection: Connection, revision: NewRevision, new_review: NewReview | None, now: datetime
+) -> LabelRevision:
     shape = refuse_unknown_shapes(connection, [revision.shape_id])[revision.shape_id]
     author = connection.execute(select(t.person.c.name).where(t.person.c.id == revision.author_id)).scalar()
     if author is None:
         raise NotFoundError(f"there is no person with id {revision.author_id}; add the author first")
+    lock_labels(connection, revision.shape_id)
+    schema_version(connection, shape.collection_id, for_share=True)  # no part is removed while labels with it come in
     schema = parts(connection, shape.collection_id, revision.schema_version)
-    encoded = encode_labels(checked_labels(revision.labels, _n_faces(connection, revision), schema))
+    checked = checked_labels(revision.labels, _n_faces(connection, revision), schema)
+    encoded = encode_labels(checked)
     _refuse_foreign_parent(connection, revision)
+    if revision.origin is not None:
+        _refuse_outdated_parent(connection, revision)
     values = {
         "shape_id": revision.shape_id,
         "mesh_hash": revision.mesh_hash,
@@ -40,11 +52,29 @@ def add_revision(connection: Connection, revision: NewRevision, now: datetime) -
         "sha256": encoded.sha256,
         "created_at": now,
     }
-    statement = insert(t.label_revision).values(**values, labels=encoded.blob).returning(t.label_revision.c.id)
-    revision_id = connection.execute(statement).scalar_one()
+    origin = None if revision.origin is None else asdict(revision.origin)
+    statement = insert(t.label_revision).values(**values, origin=origin, labels=encoded.blob)
+    revision_id = connection.execute(statement.returning(t.label_revision.c.id)).scalar_one()
+    _note_parts(connection, shape.collection_id, revision_id, checked)
+    committed = LabelRevision(**{**values, "id": revision_id, "kind": revision.kind, "origin": revision.origin})
+    if revision.kind in SHOWN_KINDS:
+        succeed_reviews(connection, committed, now)
+    if new_review is not None:
+        add_review(connection, revision_id, new_review, now)
     detail = {"kind": values["kind"], "shape_id": revision.shape_id, "sha256": encoded.sha256}
-    append_audit(connection, author, "label", f"label_revision {revision_id}", detail, now)
-    return LabelRevision(**{**values, "id": revision_id, "kind": revision.kind})
+    actor, action = (author, "label") if origin is None else (MACHINE, "move labels")
+    append_audit(connection, actor, action, f"label_revision {revision_id}", detail | (origin or {}), now)
+    return committed
+
+
+def _note_parts(connection: Connection, collection_id: int, revision_id: int, labels: UInt16[np.ndarray, " m"]) -> None:
+    rows = [
+        {"collection_id": collection_id, "part_id": part_id, "revision_id": revision_id}
+        for part_id in np.unique(labels).tolist()
+        if part_id != NO_PART_ID
+    ]
+    if rows:
+        connection.execute(insert(t.label_part), rows)
 
 
 def _n_faces(connection: Connection, revision: NewRevision) -> int:
@@ -75,8 +105,21 @@ def _refuse_foreign_parent(connection: Connection, revision: NewRevision) -> Non
         )
 
 
+def _refuse_outdated_parent(connection: Connection, revision: NewRevision) -> None:
+    """Moved labels follow the newest of their kinds only: they must never hide what somebody has just confirmed."""
+    kinds = SHOWN_KINDS if revision.kind in SHOWN_KINDS else (revision.kind,)
+    head = head_revisions(connection, [revision.shape_id], kinds).get(revision.shape_id)
+    if head is None or head.id != revision.parent_id or head.kind is not revision.kind:
+        newest = "none" if head is None else f"revision {head.id}, {head.kind}"
+        raise ConflictError(
+            f"moved labels must follow the newest of shape {revision.shape_id} ({newest}) but are {revision.kind} and "
+            f"follow revision {revision.parent_id}; move the newest instead"
+        )
+
+
 def _record(row: Row[Any]) -> LabelRevision:
-    return LabelRevision(**{**row._mapping, "kind": RevisionKind(row.kind)})
+    origin = None if row.origin is None else RevisionOrigin(**row.origin)
+    return LabelRevision(**{**row._mapping, "kind": RevisionKind(row.kind), "origin": origin})
 
 
 def revision(connection: Connection, revision_id: int) -> LabelRevision:
@@ -120,7 +163,13 @@ def head_revisions(
 
 
 def labelled_shapes(
-    connection: Connection, collection_id: int, kinds: Sequence[RevisionKind], after: int, limit: int
+    connection: Connection,
+    collection_id: int,
+    kinds: Sequence[RevisionKind],
+    after: int,
+    limit: int,
+    *,
+    leave_out_reviews: bool,
 ) -> Sequence[LabelRevision]:
     heads = (
         _heads(kinds)
@@ -128,7 +177,13 @@ def labelled_shapes(
         .where(t.shape.c.collection_id == collection_id, t.label_revision.c.shape_id > after)
         .order_by(t.label_revision.c.shape_id)
         .limit(limit)
-        .scalar_subquery()
     )
-    query = select(*_COLUMNS).where(t.label_revision.c.id.in_(heads)).order_by(t.label_revision.c.shape_id)
+    if leave_out_reviews:  # reviews are of newest labels, so an open one says enough about the shape
+        is_in_review = exists().where(t.review.c.shape_id == t.shape.c.id, t.review.c.resolved_at.is_(None))
+        heads = heads.where(~is_in_review)
+    query = (
+        select(*_COLUMNS)
+        .where(t.label_revision.c.id.in_(heads.scalar_subquery()))
+        .order_by(t.label_revision.c.shape_id)
+    )
     return [_record(row) for row in connection.execute(query)]

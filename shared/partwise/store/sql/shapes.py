@@ -10,10 +10,12 @@ from sqlalchemy import Connection, Select, exists, func, select, update
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
-from partwise.store.records import IngestedShape, IngestOutcome, Mesh, NewMesh, NewShape, Shape, ShapeState
+from partwise.store.records import IngestedShape, IngestOutcome, Mesh, MeshRole, NewMesh, NewShape, Shape, ShapeState
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import batches, insert_for
 from partwise.store.sql.state import shape_state
+
+_PRESENT = {MeshRole.WORKING: t.shape.c.mesh_hash, MeshRole.ORIGINAL: t.shape.c.original_mesh_hash}
 
 
 def add_shapes(
@@ -147,17 +149,24 @@ def mesh(connection: Connection, shape_id: int, mesh_hash: str) -> Mesh:
     return Mesh(**row._mapping)
 
 
-def meshes(connection: Connection, shape_ids: SizedIterable[int]) -> dict[int, Mesh]:
-    newest: dict[int, Mesh] = {}
+def meshes(connection: Connection, shape_ids: SizedIterable[int], role: MeshRole) -> dict[int, Mesh]:
+    present = _PRESENT[role]
+    found: dict[int, Mesh] = {}
     for some in batches(shape_ids):
-        # ids of blocks grow with time, so the last row that a shape gets is its newest mesh
-        query = _mesh_query().where(t.shape_mesh.c.shape_id.in_(some)).order_by(t.shape_mesh.c.block_id.nulls_first())
-        newest.update({row.shape_id: Mesh(**row._mapping) for row in connection.execute(query)})
-    return newest
+        query = (
+            _mesh_query()
+            .join(t.shape, (t.shape.c.id == t.shape_mesh.c.shape_id) & (present == t.shape_mesh.c.mesh_hash))
+            .where(t.shape.c.id.in_(some))
+        )
+        found.update({row.shape_id: Mesh(**row._mapping) for row in connection.execute(query)})
+    return found
 
 
 def add_meshes(connection: Connection, block_id: int, new_meshes: Sequence[NewMesh], now: datetime) -> None:
-    """Record where meshes lie; one that is known already is found in the new block from now on."""
+    """Record where meshes lie, and that they are their shapes' present ones in their roles.
+
+    A mesh that is known already is found in the new block from now on.
+    """
     for new in new_meshes:
         known = connection.execute(select(t.mesh).where(t.mesh.c.hash == new.mesh_hash)).first()
         if known is None:
@@ -177,6 +186,8 @@ def add_meshes(connection: Connection, block_id: int, new_meshes: Sequence[NewMe
                 index_elements=["shape_id", "mesh_hash"], set_={"block_id": block_id, "row": new.row}
             )
         )
+        present = {_PRESENT[new.role].name: new.mesh_hash}
+        connection.execute(update(t.shape).where(t.shape.c.id == new.shape_id).values(present))
 
 
 def keep_mesh(connection: Connection, mesh_hash: str, kept_key: str) -> None:

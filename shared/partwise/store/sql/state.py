@@ -1,6 +1,7 @@
 """The state of a shape: derived, in this one place, from its revisions and stage runs, never stored.
 
-In order, the first that holds: confirmed (a human or imported revision), ready (the describe stage has a current done
+In order, the first that holds: review (an open review: its newest human or imported labels wait for someone to look at
+them), confirmed (a human or imported revision), ready (the describe stage has a current done
 run), failed (any stage failed), new. See `partwise.store.records.ShapeState`.
 """
 
@@ -29,6 +30,7 @@ def is_failed_run() -> ColumnElement[bool]:
 
 def shape_state() -> ColumnElement[str]:
     """The state of the row of `shape` in the surrounding query."""
+    is_in_review = exists().where(t.review.c.shape_id == t.shape.c.id, t.review.c.resolved_at.is_(None))
     is_confirmed = exists().where(
         t.label_revision.c.shape_id == t.shape.c.id, t.label_revision.c.kind.in_([kind.value for kind in SHOWN_KINDS])
     )
@@ -36,6 +38,7 @@ def shape_state() -> ColumnElement[str]:
     is_ready = exists().where(of_shape, t.stage_run.c.stage == READY_STAGE, is_current_run())
     is_failed = exists().where(of_shape, is_failed_run())
     return case(
+        (is_in_review.correlate(t.shape), ShapeState.REVIEW.value),
         (is_confirmed.correlate(t.shape), ShapeState.CONFIRMED.value),
         (is_ready.correlate(t.shape), ShapeState.READY.value),
         (is_failed.correlate(t.shape), ShapeState.FAILED.value),

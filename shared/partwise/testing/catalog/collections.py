@@ -92,6 +92,37 @@ class CollectionConformance:
             catalog.add_part(collection.id, "seat")
         assert catalog.get_collection("chairs").schema_version == 1
 
+    def test_part_goes_below_another_and_back_to_the_top(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat", "base"])
+        assert catalog.add_part(collection.id, "leg", parent_id=2).part(3).parent_id == 2
+        assert catalog.update_part(collection.id, 3, name="foot").part(3).parent_id == 2
+        assert catalog.update_part(collection.id, 2, parent_id=1).ancestors(3) == (2, 1)
+        after = catalog.update_part(collection.id, 3, parent_id=0)
+        assert (after.version, after.part(3).parent_id) == (2, None)
+
+    def test_parents_that_go_round_or_are_unknown_are_refused(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["seat", "base"])
+        before = catalog.update_part(collection.id, 2, parent_id=1)
+        with raises(LabelError, "seat → base → seat"):
+            catalog.update_part(collection.id, 1, parent_id=2)
+        with raises(LabelError, "7"):
+            catalog.update_part(collection.id, 1, parent_id=7)
+        with raises(LabelError, "7"):
+            catalog.add_part(collection.id, "leg", parent_id=7)
+        assert catalog.parts(collection.id) == before
+
+    def test_part_above_others_is_not_removed(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["base", "leg"])
+        catalog.update_part(collection.id, 2, parent_id=1)
+        with raises(ConflictError, "base", "leg"):
+            catalog.remove_part(collection.id, 1)
+
+    def test_older_version_is_without_parents_that_came_later(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("chairs", ["leg"])
+        catalog.add_part(collection.id, "base")
+        catalog.update_part(collection.id, 1, parent_id=2)
+        assert catalog.parts(collection.id, 1).part(1).parent_id is None
+
     def test_removing_an_unknown_part_is_refused(self, catalog: Catalog) -> None:
         collection = catalog.create_collection("chairs", ["seat"])
         with raises(LabelError, "7"):

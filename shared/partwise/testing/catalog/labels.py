@@ -5,10 +5,11 @@ import dataclasses
 
 import numpy as np
 
-from partwise.errors import LabelError, NotFoundError
+from partwise.errors import ConflictError, LabelError, NotFoundError
 from partwise.store.catalog import Catalog
 from partwise.store.records import NewRevision, RevisionKind
-from partwise.testing.catalog.samples import N_FACES, add_collection, label, mesh_hash, publish_mesh
+from partwise.store.reviews import NewReview, ReviewReason, RevisionOrigin
+from partwise.testing.catalog.samples import N_FACES, add_collection, label, mesh_hash, move, publish_mesh
 from partwise.testing.expect import raises
 
 
@@ -86,7 +87,7 @@ class LabelConformance:
     def test_labels_follow_the_version_they_name(self, catalog: Catalog) -> None:
         revision = _revision(catalog, labels=np.full(N_FACES, 2))
         collection = catalog.get_collection("chairs")
-        catalog.remove_part(collection.id, 2)
+        catalog.remove_part(collection.id, 2)  # as nobody uses it yet
         assert catalog.add_revision(revision).schema_version == 1
         with raises(LabelError, "2"):
             catalog.add_revision(dataclasses.replace(revision, schema_version=2))
@@ -125,6 +126,74 @@ class LabelConformance:
         label(catalog, shape_id, RevisionKind.REFERENCE)
         assert catalog.labelled_shapes(collection.id) == []
         assert len(catalog.labelled_shapes(collection.id, kinds=[RevisionKind.REFERENCE])) == 1
+
+    def test_labels_of_shapes_in_review_are_left_out_when_asked(self, catalog: Catalog) -> None:
+        collection, ids = add_collection(catalog, 2)
+        for shape_id in ids:
+            publish_mesh(catalog, shape_id)
+        heads = [label(catalog, shape_id) for shape_id in ids]
+        catalog.add_review(heads[0].id, NewReview(ReviewReason.MAP_BACK))
+        assert catalog.labelled_shapes(collection.id) == heads
+        assert catalog.labelled_shapes(collection.id, leave_out_reviews=True) == heads[1:]
+
+    def test_a_part_in_use_is_not_removed(self, catalog: Catalog) -> None:
+        collection, ids = add_collection(catalog, 3)
+        for shape_id in ids:
+            publish_mesh(catalog, shape_id)
+        for shape_id in ids[:2]:
+            label(catalog, shape_id, labels=(1, 1, 2, 2, 0, 0))
+        label(catalog, ids[2], RevisionKind.IMPORTED, (1,) * N_FACES)
+        with raises(ConflictError, "back", "2 shapes"):
+            catalog.remove_part(collection.id, 2)
+        label(catalog, ids[0], labels=(1,) * N_FACES)
+        with raises(ConflictError, "back", "1 shape;"):
+            catalog.remove_part(collection.id, 2)
+        label(catalog, ids[1], RevisionKind.IMPORTED, (0,) * N_FACES)
+        assert catalog.remove_part(collection.id, 2).ids == (1,)
+
+    def test_reference_labels_do_not_hold_a_part(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id)
+        label(catalog, shape_id, RevisionKind.REFERENCE)
+        assert catalog.remove_part(collection.id, 2).ids == (1,)
+
+    def test_another_collections_labels_do_not_hold_a_part(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0, "chairs")
+        _, (mug,) = add_collection(catalog, 1, "mugs")
+        publish_mesh(catalog, mug)
+        label(catalog, mug)
+        assert catalog.remove_part(collection.id, 2).ids == (1,)
+
+    def test_moved_labels_say_where_they_came_from(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id, 1)
+        first = label(catalog, shape_id)
+        publish_mesh(catalog, shape_id, 2)
+        moved = move(catalog, first, 2, 0.99)
+        assert moved.origin == RevisionOrigin(mesh_hash(shape_id, 1), first.id, 0.99)
+        assert catalog.revision(moved.id) == moved
+        assert (first.origin, catalog.revision(first.id)) == (None, first)
+        assert (moved.parent_id, moved.author_id, moved.kind) == (first.id, first.author_id, first.kind)
+
+    def test_moved_labels_never_hide_newer_ones(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id, 1)
+        first = label(catalog, shape_id)
+        publish_mesh(catalog, shape_id, 2)
+        newest = label(catalog, shape_id)
+        with raises(ConflictError, f"revision {newest.id}"):
+            move(catalog, first, 2)
+        assert catalog.head_revision(shape_id) == newest
+
+    def test_moved_labels_are_the_machines_doing_on_the_audit_trail(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id, 1)
+        first = label(catalog, shape_id)
+        publish_mesh(catalog, shape_id, 2)
+        moved = move(catalog, first, 2, 0.99)
+        entry = catalog.audit()[-1]
+        assert (entry.actor, entry.action, entry.subject) == ("partwise", "move labels", f"label_revision {moved.id}")
+        assert (entry.detail["source_id"], entry.detail["agreement"]) == (first.id, 0.99)
 
     def test_an_unknown_revision_is_refused(self, catalog: Catalog) -> None:
         for ask in (catalog.revision, catalog.labels):

@@ -9,6 +9,7 @@ from partwise.store.catalog import Catalog
 from partwise.store.records import (
     Collection,
     LabelRevision,
+    MeshRole,
     Model,
     NewBlock,
     NewMesh,
@@ -18,6 +19,7 @@ from partwise.store.records import (
     NewStageRun,
     RevisionKind,
 )
+from partwise.store.reviews import NewReview, RevisionOrigin
 
 N_FACES = 6
 
@@ -44,11 +46,12 @@ def mesh_hash(shape_id: int, version: int = 1) -> str:
     return f"{shape_id:032x}{version:032x}"
 
 
-def publish_mesh(catalog: Catalog, shape_id: int, version: int = 1) -> str:
+def publish_mesh(catalog: Catalog, shape_id: int, version: int = 1, role: MeshRole = MeshRole.WORKING) -> str:
     """Publish a mesh of `N_FACES` faces for a shape in a block of its own; returns the block's name."""
     block = new_block(1, "mesh")
     runs = [NewStageRun(shape_id, "mesh", f"k{version}", 0)]
-    catalog.publish_block(block, runs, meshes=[NewMesh(shape_id, mesh_hash(shape_id, version), 5, N_FACES, 0)])
+    new = NewMesh(shape_id, mesh_hash(shape_id, version), 5, N_FACES, 0, role)
+    catalog.publish_block(block, runs, meshes=[new])
     return block.name
 
 
@@ -58,6 +61,24 @@ def label(
     """Commit labels of a shape whose mesh is published, by an author made on first use."""
     author = next(iter(catalog.list_people()), None) or catalog.add_person("ann")
     return catalog.add_revision(NewRevision(shape_id, mesh_hash(shape_id), kind, author.id, 1, np.array(labels)))
+
+
+def move(
+    catalog: Catalog, parent: LabelRevision, version: int, agreement: float = 1.0, review: NewReview | None = None
+) -> LabelRevision:
+    """Commit a revision's labels once more, as moved to another of the shape's meshes."""
+    origin = RevisionOrigin(parent.mesh_hash, parent.id, agreement)
+    moved = NewRevision(
+        parent.shape_id,
+        mesh_hash(parent.shape_id, version),
+        parent.kind,
+        parent.author_id,
+        parent.schema_version,
+        catalog.labels(parent.id),
+        parent.id,
+        origin,
+    )
+    return catalog.add_revision(moved, review)
 
 
 def save_model(catalog: Catalog, collection_id: int) -> Model:

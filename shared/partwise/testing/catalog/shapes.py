@@ -3,7 +3,17 @@
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store.catalog import Catalog
-from partwise.store.records import IngestOutcome, NewFailure, NewMesh, NewShape, NewStageRun, RevisionKind, ShapeState
+from partwise.store.records import (
+    IngestOutcome,
+    MeshRole,
+    NewFailure,
+    NewMesh,
+    NewShape,
+    NewStageRun,
+    RevisionKind,
+    ShapeState,
+)
+from partwise.store.reviews import NewReview, ReviewReason
 from partwise.testing.catalog.samples import (
     N_FACES,
     add_collection,
@@ -82,15 +92,18 @@ class ShapeConformance:
         assert set(catalog.shape_states([shape_id, 99])) == {shape_id}
 
     def test_states_follow_the_work(self, catalog: Catalog) -> None:
-        collection, (new, failed, ready, confirmed) = add_collection(catalog, 4)
+        collection, (new, failed, ready, in_review, confirmed) = add_collection(catalog, 5)
         catalog.record_failure(NewFailure(failed, "describe", "k1", "no faces"))
         publish(catalog, [ready])
-        publish_mesh(catalog, confirmed)
-        label(catalog, confirmed)
+        for shape_id in (in_review, confirmed):
+            publish_mesh(catalog, shape_id)
+            label(catalog, shape_id)
+        catalog.add_review(label(catalog, in_review).id, NewReview(ReviewReason.MAP_BACK))
         expected = {
             new: ShapeState.NEW,
             failed: ShapeState.FAILED,
             ready: ShapeState.READY,
+            in_review: ShapeState.REVIEW,
             confirmed: ShapeState.CONFIRMED,
         }
         assert catalog.shape_states(expected) == expected
@@ -119,6 +132,23 @@ class ShapeConformance:
         block_name = publish_mesh(catalog, shape_id)
         mesh = catalog.mesh(shape_id, mesh_hash(shape_id))
         assert (mesh.block_name, mesh.row, mesh.n_faces, mesh.kept_key) == (block_name, 0, N_FACES, None)
+
+    def test_original_and_working_mesh_are_told_apart(self, catalog: Catalog) -> None:
+        _, (shape_id, other) = add_collection(catalog, 2)
+        publish_mesh(catalog, shape_id, 1, MeshRole.ORIGINAL)
+        assert catalog.meshes([shape_id]) == {}
+        publish_mesh(catalog, shape_id, 2)
+        assert catalog.original_meshes([shape_id, other])[shape_id].mesh_hash == mesh_hash(shape_id, 1)
+        assert set(catalog.original_meshes([shape_id, other])) == {shape_id}
+        shape = catalog.shape(shape_id)
+        assert (shape.original_mesh_hash, shape.mesh_hash) == (mesh_hash(shape_id, 1), mesh_hash(shape_id, 2))
+
+    def test_one_mesh_may_be_original_and_working(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id, 1, MeshRole.ORIGINAL)
+        block_name = publish_mesh(catalog, shape_id, 1)
+        for found in (catalog.meshes([shape_id]), catalog.original_meshes([shape_id])):
+            assert (found[shape_id].mesh_hash, found[shape_id].block_name) == (mesh_hash(shape_id), block_name)
 
     def test_newest_mesh_is_the_one_published_last(self, catalog: Catalog) -> None:
         _, (shape_id, other) = add_collection(catalog, 2)
