@@ -2,37 +2,24 @@
 
 import hashlib
 import json
-import re
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
+from itertools import chain
 from pathlib import Path, PurePosixPath
 
 from partwise.errors import FileFormatError, ParameterError
+from partwise.exchange.described_json import load_json
 from partwise.exchange.label_files import read_label_text
+from partwise.exchange.labelled_mesh import LABEL_KINDS, check_sha256
+from partwise.exchange.parts import PartEntry, PartTable
 from partwise.io.atomic import write_atomically
+from partwise.unlabelled import NO_CLASS
 
 FORMAT = "partwise.export"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+_READ_VERSIONS = (1, 2)  # 1 lacked what has a default
 SEGMENTATIONS = ("confirmed", "refined", "predicted")
-_SHA256 = re.compile(r"[0-9a-f]{64}")
-_COLOUR = re.compile(r"#[0-9a-f]{6}")
-
-
-@dataclass(frozen=True, slots=True)
-class ManifestPart:
-    """A part of the schema; colour as #rrggbb in lower case. Id −1 is no part: it marks unlabelled faces."""
-
-    id: int
-    name: str
-    colour: str
-
-    def __post_init__(self) -> None:
-        if self.id < 0 or not self.name:
-            raise ParameterError(f"a part must have an id ≥ 0 and a name but has {self.id} and {self.name!r}; fix both")
-        if not _COLOUR.fullmatch(self.colour):
-            raise ParameterError(
-                f"a colour must be like #1f77b4 but part {self.name!r} has {self.colour!r}; rewrite it"
-            )
+ManifestPart = PartEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +33,7 @@ class ManifestFile:
         path = PurePosixPath(self.path)
         if not self.path or path.is_absolute() or ".." in path.parts or "\\" in self.path:
             raise ParameterError(f"a path must be relative, without .. or backslash, but is {self.path!r}; shorten it")
-        _check_hash(self.sha256, f"the hash of {self.path}")
+        check_sha256(self.sha256, f"the hash of {self.path}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +44,7 @@ class ManifestShape:
     source_hash : SHA-256 of the ingested source file.
     faces_per_part : part id → number of faces with it; −1 for unlabelled. Sums to `n_faces`.
     model_version : of predicted and refined labels, which may come from different models; None for confirmed ones.
+    kind : one of `LABEL_KINDS`; "" where the export did not say.
     """
 
     source_key: str
@@ -66,10 +54,15 @@ class ManifestShape:
     faces_per_part: dict[int, int]
     files: tuple[ManifestFile, ...]
     model_version: int | None = None
+    kind: str = ""
 
     def __post_init__(self) -> None:
-        _check_hash(self.mesh_hash, f"mesh_hash of {self.source_key}")
-        _check_hash(self.source_hash, f"source_hash of {self.source_key}")
+        check_sha256(self.mesh_hash, f"mesh_hash of {self.source_key}")
+        check_sha256(self.source_hash, f"source_hash of {self.source_key}")
+        if self.kind and self.kind not in LABEL_KINDS:
+            raise ParameterError(
+                f"the kind of {self.source_key}'s labels must be one of {LABEL_KINDS} but is {self.kind!r}; choose one"
+            )
         if min(self.faces_per_part.values(), default=0) < 0 or sum(self.faces_per_part.values()) != self.n_faces:
             raise ParameterError(
                 f"faces_per_part of {self.source_key} must sum to {self.n_faces} faces but are {self.faces_per_part}; "
@@ -82,11 +75,13 @@ class ExportManifest:
     """Everything needed to know what an export is and to check that it is whole.
 
     segmentation : "confirmed", "refined" or "predicted".
+    files : of the collection as a whole, such as one COCO file for all shapes.
+    parameters : what shaped the files beyond the labels: format, points a shape, seed, …
 
     Raises
     ------
-    ParameterError : unknown segmentation, no model where there must be one, or parts that a shape counts but the
-        schema lacks.
+    ParameterError : unknown segmentation, no model where there must be one, parts that are no schema, or parts that a
+        shape counts but the schema lacks.
     """
 
     partwise_version: str
@@ -95,17 +90,15 @@ class ExportManifest:
     parts: tuple[ManifestPart, ...]
     segmentation: str
     shapes: tuple[ManifestShape, ...]
+    files: tuple[ManifestFile, ...] = ()
+    parameters: dict[str, str | int | float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.segmentation not in SEGMENTATIONS:
             raise ParameterError(
                 f"segmentation must be one of {SEGMENTATIONS} but is {self.segmentation!r}; choose one"
             )
-        known = {part.id for part in self.parts} | {-1}
-        if len(known) != len(self.parts) + 1:
-            raise ParameterError(
-                f"part ids must be distinct but are {[part.id for part in self.parts]}; never reuse ids"
-            )
+        known = {*PartTable(self.schema_version, self.parts).ids, NO_CLASS}
         for shape in self.shapes:
             if (shape.model_version is None) != (self.segmentation == "confirmed"):
                 raise ParameterError(
@@ -136,13 +129,14 @@ def read_manifest(path: Path | str, data: bytes | None = None) -> ExportManifest
     """
     text = read_label_text(path, data)
     try:
-        document = json.loads(text)
+        document = load_json(text, "a manifest")
         found = document["format"], document["format_version"]
-        if found != (FORMAT, FORMAT_VERSION):
+        if found[0] != FORMAT or found[1] not in _READ_VERSIONS:
             raise ValueError(f"its format is {found}")
         fields = {key: value for key, value in document.items() if key not in ("format", "format_version")}
-        fields["parts"] = tuple(ManifestPart(**part) for part in document["parts"])
+        fields["parts"] = tuple(PartEntry(**part) for part in document["parts"])
         fields["shapes"] = tuple(_shape(shape) for shape in document["shapes"])
+        fields["files"] = tuple(ManifestFile(**file) for file in document.get("files", ()))
         return ExportManifest(**fields)
     except (KeyError, TypeError, AttributeError, ValueError) as error:  # JSON's and our own errors are ValueErrors
         raise FileFormatError(
@@ -152,7 +146,7 @@ def read_manifest(path: Path | str, data: bytes | None = None) -> ExportManifest
 
 def damaged_files(manifest: ExportManifest, folder: Path) -> tuple[str, ...]:
     """Paths of files that are missing from `folder` or whose hash differs."""
-    files: Iterable[ManifestFile] = (file for shape in manifest.shapes for file in shape.files)
+    files: Iterable[ManifestFile] = chain(manifest.files, *(shape.files for shape in manifest.shapes))
     return tuple(
         file.path
         for file in files
@@ -170,8 +164,3 @@ def _shape(fields: dict[str, object]) -> ManifestShape:
     faces_per_part = {int(part): count for part, count in fields["faces_per_part"].items()}  # type: ignore[attr-defined]
     files = tuple(ManifestFile(**file) for file in fields["files"])  # type: ignore[attr-defined]
     return ManifestShape(**{**fields, "faces_per_part": faces_per_part, "files": files})  # type: ignore[arg-type]
-
-
-def _check_hash(value: str, what: str) -> None:
-    if not _SHA256.fullmatch(value):
-        raise ParameterError(f"{what} must be SHA-256 in lower-case hex but is {value!r}; compute it from the bytes")

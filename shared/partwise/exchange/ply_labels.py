@@ -1,7 +1,6 @@
 """PLY with a label and a colour on every face: for viewers, and for reading back."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,34 +8,15 @@ from jaxtyping import Int, UInt8
 
 from partwise.errors import FileFormatError, LabelError
 from partwise.exchange.label_files import read_label_bytes
+from partwise.exchange.labelled_mesh import LabelledMesh as LabelledMesh
+from partwise.exchange.parts import Rgb as Rgb
 from partwise.io.atomic import write_atomically
 from partwise.io.ply import format_ply, parse_ply_face_property
 from partwise.io.read import read_mesh
-from partwise.mesh import TriMesh
 from partwise.unlabelled import NO_CLASS
 
-Rgb = tuple[int, int, int]
 UNLABELLED_COLOUR: Rgb = (160, 160, 160)
 LABEL_PROPERTY = "label"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LabelledMesh:
-    """A mesh and the label of each of its faces, (m,) int64; −1 = unlabelled.
-
-    Raises
-    ------
-    LabelError : not one label per face.
-    """
-
-    mesh: TriMesh
-    labels: Int[np.ndarray, " m"]
-
-    def __post_init__(self) -> None:
-        if self.labels.shape != (self.mesh.n_faces,):
-            raise LabelError(
-                f"{self.mesh.n_faces} faces must have a label each but labels are {self.labels.shape}; another mesh's?"
-            )
 
 
 def read_ply_labels(path: Path | str, data: bytes | None = None) -> LabelledMesh:

@@ -29,7 +29,7 @@ def parse_glb(data: bytes, limits: ReadLimits) -> TriMesh:
     ------
     FileFormatError : not GLB 2, truncated, compressed, pointing outside itself, or without triangles.
     """
-    document, binary_chunk = _chunks(data)
+    document, binary_chunk = unpack_glb(data)
     try:
         return _read_scene(document, GltfAccessors(document, binary_chunk), limits)
     except (KeyError, IndexError, TypeError, AttributeError, OverflowError) as error:
@@ -69,9 +69,13 @@ def format_glb(mesh: TriMesh, face_colours: UInt8[np.ndarray, "m 3"] | None = No
             for offset, block in zip(offsets, blocks, strict=False)
         ],
     }
+    return pack_glb(document, b"".join(blocks))
+
+
+def pack_glb(document: dict[str, Any], binary: bytes) -> bytes:
+    """A GLB file of a glTF document and its buffer, whose length must be a multiple of four."""
     text = json.dumps(document, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)  # chunks are padded to four bytes; every block already is
-    binary = b"".join(blocks)
+    text += b" " * (-len(text) % 4)  # chunks are padded to four bytes
     chunks = _chunk(_JSON_CHUNK, text) + _chunk(_BINARY_CHUNK, binary)
     return b"glTF" + np.array([2, 12 + len(chunks)], dtype="<u4").tobytes() + chunks
 
@@ -80,8 +84,8 @@ def _chunk(kind: int, content: bytes) -> bytes:
     return np.array([len(content), kind], dtype="<u4").tobytes() + content
 
 
-def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
-    """The JSON document and the binary chunk."""
+def unpack_glb(data: bytes) -> tuple[dict[str, Any], bytes]:
+    """The glTF document and the binary chunk of a GLB file; FileFormatError if it is none or is truncated."""
     if data[:4] != b"glTF":
         raise FileFormatError(f"a GLB file must start with glTF but starts with {data[:4]!r}; is the suffix right?")
     version, length = (int.from_bytes(data[k : k + 4], "little") for k in (4, 8))

@@ -73,7 +73,7 @@ def test_refuses(original, changes, message):
         b"not json",
         b"[]",
         b"{}",
-        MANIFEST.to_json().replace('"format_version": 1', '"format_version": 2').encode(),
+        MANIFEST.to_json().replace('"format_version": 2', '"format_version": 3').encode(),
         MANIFEST.to_json().replace("partwise.export", "other.export").encode(),
         MANIFEST.to_json().replace('"collection"', '"kollection"').encode(),
         MANIFEST.to_json().replace('"refined"', '"guessed"').encode(),
