@@ -55,5 +55,9 @@ class ConflictError(PartwiseError, ValueError):
     """What was asked contradicts what is already committed."""
 
 
+class WorkerError(PartwiseError, RuntimeError):
+    """Ray cannot be reached or started, or its processes do not stay alive, whatever the shape."""
+
+
 class NotEnoughDataError(PartwiseError, ValueError):
     """Too few shapes or labels for what was asked."""

@@ -14,9 +14,11 @@ import psutil
 import pytest
 import trimesh
 
-from partwise.errors import NotEnoughDataError
+from partwise.errors import NotEnoughDataError, WorkerError
 from partwise.mesh import TriMesh
-from partwise.store.block_kinds import MESH, N_BINS, N_LIGHT_FIELD
+from partwise.store.block_kinds import N_BINS, N_LIGHT_FIELD, REMESH
+from partwise.store.levels import remeshed_arrays
+from partwise.store.meshes import mesh_arrays
 from partwise.store.records import (
     Collection,
     Model,
@@ -29,7 +31,6 @@ from partwise.store.records import (
 )
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers import training
-from partwise_workers.errors import WorkerError
 from partwise_workers.model_store import ModelReference, read_model
 from partwise_workers.plan import chain_keys, description_stages
 from partwise_workers.training import _Trainer, labelled_shapes, recipe_of, train_collection
@@ -61,27 +62,21 @@ def described_balls(path: Path) -> Iterator[tuple[Workspace, Collection]]:
 
 def publish(workspace: Workspace, ids: list[int]) -> None:
     """Meshes and features of the shapes, as a run of the configured stages would leave them."""
-    meshes = [{"vertices": m.vertices.astype(np.float32), "faces": m.faces.astype(np.uint32)} for m in MESHES]
-    hashes = [mesh.content_hash() for mesh in MESHES]
-    publish_stage(
-        workspace,
-        ids,
-        0,
-        meshes,
-        [
-            NewMesh(shape_id, hashes[row], MESHES[row].n_vertices, MESHES[row].n_faces, row)
-            for row, shape_id in enumerate(ids)
-        ],
-    )
+    made = [
+        NewMesh(shape_id, MESHES[row].content_hash(), MESHES[row].n_vertices, MESHES[row].n_faces, row)
+        for row, shape_id in enumerate(ids)
+    ]
+    publish_stage(workspace, ids, 0, [mesh_arrays(mesh) for mesh in MESHES])
+    publish_stage(workspace, ids, 1, [remeshed_arrays(mesh, [(10_000, None)]) for mesh in MESHES], made)
     rng = np.random.default_rng(0)
-    publish_stage(workspace, ids, 1, [features(rng) for _ in ids])
+    publish_stage(workspace, ids, 2, [features(rng) for _ in ids])
 
 
 def publish_stage(
     workspace: Workspace, ids: list[int], position: int, arrays: list[dict[str, np.ndarray]], meshes: Sequence = ()
 ) -> None:
     """One block of what the stage at this position of the chain made."""
-    stages = description_stages(workspace.config)
+    stages = description_stages(workspace, workspace.catalog.list_collections()[0])
     stage, shapes = stages[position], workspace.catalog.shapes_by_id(ids)
     block = workspace.arrays.write_block(stage.block_kind, arrays)
     runs = [
@@ -145,13 +140,13 @@ def test_labels_of_another_mesh_are_left_out(described) -> None:
     workspace, collection = described
     label(workspace, collection, 0, LABELS)
     shape = workspace.catalog.shape_by_key(collection.id, "0.off")
-    other = {"vertices": MESHES[1].vertices.astype(np.float32), "faces": MESHES[1].faces.astype(np.uint32)}
+    other = remeshed_arrays(MESHES[1], [(10_000, None)])
     new = NewMesh(shape.id, MESHES[1].content_hash(), MESHES[1].n_vertices, MESHES[1].n_faces, 0)
-    key = chain_keys(shape, description_stages(workspace.config))[0]
-    block = workspace.arrays.write_block(MESH, [other])
+    key = chain_keys(shape, description_stages(workspace, collection))[1]
+    block = workspace.arrays.write_block(REMESH, [other])
     workspace.catalog.publish_block(
-        NewBlock(block.name, "mesh", block.n_shapes, block.n_bytes, block.checksum),
-        [NewStageRun(shape.id, "mesh", key, 0, summary={"mesh_hash": new.mesh_hash})],
+        NewBlock(block.name, "remesh", block.n_shapes, block.n_bytes, block.checksum),
+        [NewStageRun(shape.id, "remesh", key, 0, summary={"mesh_hash": new.mesh_hash})],
         meshes=[new],
     )
     assert list(labelled_shapes(workspace, collection)) == []

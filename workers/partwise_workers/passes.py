@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from partwise.errors import NotFoundError
 from partwise.segmentation.parameters import RefinementParameters
-from partwise.store.records import Collection, Model, NewMesh, NewScore
+from partwise.store.records import Collection, MeshRole, Model, NewMesh, NewScore
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected
@@ -16,21 +16,25 @@ from partwise_workers.runner import StageRunner
 from partwise_workers.stage import Stage
 from partwise_workers.stages import evaluate as evaluate_stage
 from partwise_workers.stages import mesh as mesh_stage
+from partwise_workers.stages import remesh as remesh_stage
 from partwise_workers.stages.evaluate import EvaluateStage
 from partwise_workers.stages.refine import RefineStage
 from partwise_workers.staging import sweep_staging
 from partwise_workers.tasks import StagedResult
 
+MESH_ROLES = {mesh_stage.NAME: MeshRole.ORIGINAL, remesh_stage.NAME: MeshRole.WORKING}
+"""What the mesh that a stage made is to its shape."""
+
 
 def preprocess(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
-    """Reads, checks and describes every shape that is not yet described as the configuration says.
+    """Reads, checks, remeshes and describes every shape that is not yet described as the configuration and the collection say.
 
     Raises
     ------
     StoreError : a store is full or cannot be reached; what is finished is kept for the next run. So do all passes.
     WorkerError : Ray or its processes cannot be started. So do all passes.
     """
-    return _run(workspace, collection, description_stages(workspace.config), (), on_progress, _meshes)
+    return _run(workspace, collection, description_stages(workspace, collection), (), on_progress, _meshes)
 
 
 def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
@@ -48,7 +52,7 @@ def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunPro
             scores=tuple(NewScore(shape_id, model.id, name, result.summary[name]) for name in evaluate_stage.SCORES)
         )
 
-    return _run(workspace, collection, (stage,), description_stages(workspace.config), on_progress, scores)
+    return _run(workspace, collection, (stage,), description_stages(workspace, collection), on_progress, scores)
 
 
 def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
@@ -60,7 +64,7 @@ def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgr
     """
     model = newest_model(workspace, collection)
     stage = RefineStage(refinement_parameters(workspace, model), model.version)
-    earlier = (*description_stages(workspace.config), EvaluateStage(ModelReference.of(model)))
+    earlier = (*description_stages(workspace, collection), EvaluateStage(ModelReference.of(model)))
     return _run(workspace, collection, (stage,), earlier, on_progress, nothing_else)
 
 
@@ -79,10 +83,11 @@ def refinement_parameters(workspace: Workspace, model: Model) -> RefinementParam
 
 
 def _meshes(shape_id: int, result: StagedResult, row: int) -> Published:
-    if result.stage != mesh_stage.NAME:
+    role = MESH_ROLES.get(result.stage)
+    if role is None:
         return Published()
     made = result.summary
-    return Published(meshes=(NewMesh(shape_id, made["mesh_hash"], made["n_vertices"], made["n_faces"], row),))
+    return Published(meshes=(NewMesh(shape_id, made["mesh_hash"], made["n_vertices"], made["n_faces"], row, role),))
 
 
 def _run(

@@ -2,14 +2,15 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from partwise.config import Config
 from partwise.store.records import Collection, Shape, StageRun
 from partwise.workspace.ingest import source_object
+from partwise.workspace.settings import settings_of
 from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
 from partwise_workers.stage import Stage, stage_key
 from partwise_workers.stages.describe import DescribeStage
 from partwise_workers.stages.mesh import MeshStage
+from partwise_workers.stages.remesh import RemeshStage
 from partwise_workers.tasks import BlockRow, ShapeTask, block_row
 
 
@@ -35,9 +36,16 @@ def plan_tasks(
                 yield task
 
 
-def description_stages(config: Config) -> tuple[Stage, Stage]:
-    """What turns an ingested file into descriptors, as configured."""
-    return MeshStage(config.mesh), DescribeStage(config.describe)
+def description_stages(workspace: Workspace, collection: Collection) -> tuple[MeshStage, RemeshStage, DescribeStage]:
+    """What turns an ingested file into descriptors, as the workspace is configured and the collection set.
+
+    Raises
+    ------
+    ParameterError : a setting of the collection is out of range.
+    """
+    config = workspace.config
+    remesh = RemeshStage.of(config.remesh, settings_of(collection))
+    return MeshStage(config.mesh), remesh, DescribeStage(config.describe)
 
 
 def chain_keys(shape: Shape, chain: Sequence[Stage]) -> list[str]:

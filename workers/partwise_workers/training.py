@@ -11,7 +11,7 @@ from jaxtyping import UInt16
 from ray.exceptions import RayError
 
 from partwise.config import TrainConfig
-from partwise.errors import NotEnoughDataError
+from partwise.errors import NotEnoughDataError, WorkerError
 from partwise.learning.dataset import CodedGrids
 from partwise.learning.fitting import LabelledShape, fit
 from partwise.learning.recipe import Recipe
@@ -22,7 +22,6 @@ from partwise.store.open import open_array_store
 from partwise.store.records import Collection, LabelRevision, Model, NewModel, StageRun
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected, cores
-from partwise_workers.errors import WorkerError
 from partwise_workers.model_store import write_model
 from partwise_workers.plan import chain_keys, description_stages
 from partwise_workers.pool import first_line, raise_own
@@ -179,14 +178,14 @@ def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[Tr
     look at them). The description must be as the configuration says, so that no model mixes two kinds.
     """
     catalog, after = workspace.catalog, 0
-    stages = description_stages(workspace.config)
+    stages = description_stages(workspace, collection)
     while page := catalog.labelled_shapes(collection.id, after=after):
         ids = [revision.shape_id for revision in page]
         shapes = catalog.shapes_by_id(ids)
-        runs = [catalog.stage_runs(ids, stage.name) for stage in stages]
+        runs = [catalog.stage_runs(ids, stage.name) for stage in stages[1:]]  # the original's mesh is another
         for revision in page:
             shape_id = revision.shape_id
-            places = _places([each.get(shape_id) for each in runs], chain_keys(shapes[shape_id], stages), revision)
+            places = _places([each.get(shape_id) for each in runs], chain_keys(shapes[shape_id], stages)[1:], revision)
             if places is not None and revision.schema_version == collection.schema_version:
                 yield TrainingShape(shape_id, revision.id, *places, catalog.labels(revision.id))
         after = ids[-1]

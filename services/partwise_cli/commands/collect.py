@@ -1,4 +1,4 @@
-"""Commands that make a workspace and fill it: init, ingest, preprocess, retry, status, gc, migrate."""
+"""Commands that make a workspace and fill it: init, settings, ingest, preprocess, retry, status, gc, migrate."""
 
 from dataclasses import asdict
 from datetime import timedelta
@@ -15,12 +15,18 @@ if TYPE_CHECKING:
     from partwise.workspace.status import CollectionStatus
 
 MAX_REASONS = 20
+Axis = Literal["x", "y", "z"]
+RemeshPolicy = Literal["auto", "never"]
+UP = "Which axis points up in pictures."
+FACES = "Faces of the meshes to label, where shapes are remeshed."
+REMESH = "auto: remesh what is not clean; never: take every mesh as it is."
+SETTING_NAMES = {"up": "up", "working_faces": "faces", "remesh": "remesh"}
 
 
 def register(app: typer.Typer) -> None:
     """Adds the commands of this module."""
     panel = "Collect shapes"
-    for command in (init, ingest, preprocess, retry, status, gc, migrate):
+    for command in (init, settings, ingest, preprocess, retry, status, gc, migrate):
         app.command(rich_help_panel=panel)(command)
 
 
@@ -28,14 +34,46 @@ def init(
     ws: WorkspaceArgument,
     collection: Annotated[str, typer.Option("--collection", "-c", help="Name of a new collection.")],
     parts: Annotated[str, typer.Option(help="Part names, comma-separated, in the order annotators see them.")],
-    up: Annotated[Literal["x", "y", "z"], typer.Option(help="Which axis points up in pictures.")] = "y",
+    up: Annotated[Axis, typer.Option(help=UP)] = "y",
+    faces: Annotated[int, typer.Option(help=FACES)] = 10_000,
+    remesh: Annotated[RemeshPolicy, typer.Option(help=REMESH)] = "auto",
 ) -> None:
     """Make a workspace.  [dim]partwise init ws -c mugs --parts body,handle[/dim]"""
+    from partwise.workspace.settings import CollectionSettings
     from partwise.workspace.workspace import init_collection
 
     names = [name.strip() for name in parts.split(",") if name.strip()]
-    init_collection(ws, collection, names, {"up": up})
+    init_collection(ws, collection, names, asdict(CollectionSettings(up, faces, remesh)))
     typer.echo(f"{ws}: collection {collection!r} with {counted(len(names), 'part')}: {', '.join(names)}")
+
+
+def settings(
+    ws: WorkspaceArgument,
+    collection: CollectionOption = None,
+    up: Annotated[Axis | None, typer.Option(help=UP, show_default=False)] = None,
+    faces: Annotated[int | None, typer.Option(help=FACES, show_default=False)] = None,
+    remesh: Annotated[RemeshPolicy | None, typer.Option(help=REMESH, show_default=False)] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Show or change a collection's settings.  [dim]partwise settings ws --faces 20000[/dim]"""
+    from partwise.workspace.settings import change_settings, settings_of
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
+
+    given = {"up": up, "working_faces": faces, "remesh": remesh}
+    changes = {name: value for name, value in given.items() if value is not None}
+    with open_workspace(ws) as workspace:
+        found = find_collection(workspace, collection)
+        before = settings_of(found)
+        after = settings_of(change_settings(workspace, found, changes)) if changes else before
+    if as_json:
+        print_json(asdict(after))
+        return
+    rows = [(SETTING_NAMES[name], str(value), str(getattr(before, name))) for name, value in asdict(after).items()]
+    columns = ("setting", "value", "before") if changes else ("setting", "value")
+    print_table(f"Settings of {found.name}", columns, [row[: len(columns)] for row in rows])
+    if (before.working_faces, before.remesh) != (after.working_faces, after.remesh):
+        typer.echo("Shapes get their new meshes, and labels move along, with the next `partwise preprocess`.")
 
 
 def ingest(
@@ -60,7 +98,7 @@ def ingest(
 
 
 def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
-    """Check and describe new shapes.  [dim]partwise preprocess ws[/dim]"""
+    """Check, remesh and describe new shapes.  [dim]partwise preprocess ws[/dim]"""
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.status import collection_status
     from partwise.workspace.workspace import open_workspace
@@ -108,12 +146,22 @@ def retry(
         typer.echo("no failures on record" if stage is None else f"no failures of stage {stage!r} on record")
 
 
-def status(ws: WorkspaceArgument, collection: CollectionOption = None, as_json: JsonOption = False) -> None:
+def status(
+    ws: WorkspaceArgument,
+    collection: CollectionOption = None,
+    shape: Annotated[
+        str | None, typer.Option(help="Instead: how this shape came to be, by key or number.", show_default=False)
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
     """How far a collection is, and what failed.  [dim]partwise status ws[/dim]"""
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.status import collection_status
     from partwise.workspace.workspace import open_workspace
 
+    if shape is not None:
+        _shape_status(ws, collection, shape, as_json)
+        return
     with open_workspace(ws) as workspace:
         state = collection_status(workspace, find_collection(workspace, collection), MAX_REASONS)
     if as_json:
@@ -128,6 +176,20 @@ def status(ws: WorkspaceArgument, collection: CollectionOption = None, as_json: 
         typer.echo(f"No stage has run yet: go on with `partwise {next_command}`.")
     typer.echo(f"Model: {'none yet' if state.model_version is None else f'version {state.model_version}'}")
     _report_failures(state)
+
+
+def _shape_status(ws: Path, collection: str | None, name: str, as_json: bool) -> None:
+    from partwise.workspace.provenance import provenance
+    from partwise.workspace.shapes import find_collection, find_shape
+    from partwise.workspace.workspace import open_workspace
+    from partwise_cli.provenance_card import print_card
+
+    with open_workspace(ws) as workspace:
+        card = provenance(workspace, find_shape(workspace, find_collection(workspace, collection), name))
+    if as_json:
+        print_json(asdict(card))
+    else:
+        print_card(card)
 
 
 def gc(

@@ -11,8 +11,9 @@ from partwise.io.off import format_off
 from partwise.mesh import TriMesh
 from partwise.selection.acquisition import mean_entropy, mean_entropy_by_area
 from partwise.store.array_store import BlockAddress
-from partwise.store.block_kinds import EVALUATION, FEATURES, MESH, N_BINS, N_LIGHT_FIELD, REFINEMENT
+from partwise.store.block_kinds import EVALUATION, FEATURES, MESH, N_BINS, N_LIGHT_FIELD, REFINEMENT, REMESH
 from partwise.store.blocks import BlockKind
+from partwise.store.levels import remeshed_arrays
 from partwise.store.meshes import mesh_arrays
 from partwise.store.records import Collection, Model, NewBlock, NewMesh, NewModel, NewScore, NewShape, NewStageRun
 from partwise.workspace import segmentations as stage
@@ -20,6 +21,8 @@ from partwise.workspace.choices import ScoreName
 from partwise.workspace.ingest import source_object
 from partwise.workspace.shapes import load_mesh
 from partwise.workspace.workspace import Workspace
+
+N_WORKING_FACES = 10_000
 
 
 def ingest(workspace: Workspace, collection: Collection, meshes: Mapping[str, TriMesh]) -> dict[str, int]:
@@ -44,6 +47,21 @@ def publish_meshes(workspace: Workspace, meshes: Mapping[int, TriMesh], key: str
         NewStageRun(mesh.shape_id, stage.MESH, key, mesh.row, summary={"mesh_hash": mesh.mesh_hash}) for mesh in made
     ]
     workspace.catalog.publish_block(_row(address, MESH), runs, meshes=made)
+    return address.name
+
+
+def publish_remeshed(workspace: Workspace, meshes: Mapping[int, TriMesh], key: str = "remesh-1") -> str:
+    """Publishes the mesh of each shape, by id, as the working mesh, taken as it is, in one block; returns its name."""
+    made = [remeshed_arrays(mesh, [(N_WORKING_FACES, None)]) for mesh in meshes.values()]
+    address = workspace.arrays.write_block(REMESH, made)
+    new = [
+        NewMesh(shape_id, mesh.content_hash(), mesh.n_vertices, mesh.n_faces, row)
+        for row, (shape_id, mesh) in enumerate(meshes.items())
+    ]
+    runs = [
+        NewStageRun(mesh.shape_id, stage.REMESH, key, mesh.row, summary={"mesh_hash": mesh.mesh_hash}) for mesh in new
+    ]
+    workspace.catalog.publish_block(_row(address, REMESH), runs, meshes=new)
     return address.name
 
 

@@ -13,7 +13,7 @@ from partwise.mesh import TriMesh
 from partwise.simulate.collection import simulate_shape
 from partwise.store.records import RevisionKind
 from partwise.testing.meshes import subdivided
-from partwise.testing.workspaces import ingest, publish_features, publish_meshes
+from partwise.testing.workspaces import ingest, publish_features, publish_meshes, publish_remeshed
 from partwise.workspace.labelling import commit_labels
 from partwise.workspace.workspace import init_collection, open_workspace
 from partwise_cli.bench import describing
@@ -97,9 +97,10 @@ def labelled(tmp_path: Path, tetrahedron: TriMesh) -> Path:
         ids = ingest(workspace, collection, meshes)
         rng = np.random.default_rng(0)
         for name, shape_id in ids.items():
-            keys = chain_keys(workspace.catalog.shape(shape_id), description_stages(workspace.config))
+            keys = chain_keys(workspace.catalog.shape(shape_id), description_stages(workspace, collection))
             publish_meshes(workspace, {shape_id: meshes[name]}, keys[0])
-            publish_features(workspace, [shape_id], rng, keys[1])
+            publish_remeshed(workspace, {shape_id: meshes[name]}, keys[1])
+            publish_features(workspace, [shape_id], rng, keys[2])
         labels = np.where(np.arange(64) < 32, 1, 2).astype(np.uint16)
         for shape_id in ids.values():
             commit_labels(

@@ -38,7 +38,7 @@ def _example(command: Any) -> list[str]:
 
 def test_the_commands_are_these() -> None:
     assert set(COMMANDS) == {
-        "init", "ingest", "preprocess", "retry", "status", "gc", "migrate", "import", "confirm", "export", "train",
+        "init", "settings", "ingest", "preprocess", "retry", "status", "gc", "migrate", "import", "confirm", "export", "train",
         "evaluate", "refine", "select", "queue", "simulate", "demo", "doctor", "version", "bench", "bench describe",
         "bench loo",
     }  # fmt: skip

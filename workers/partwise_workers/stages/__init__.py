@@ -1,1 +1,1 @@
-"""The stages of a shape's way, one a file, in order: mesh, describe, evaluate, refine."""
+"""The stages of a shape's way, one a file, in order: mesh, remesh, describe, evaluate, refine."""

@@ -1,4 +1,4 @@
-"""Stage `describe`: shape context, spin image, shape diameter and light-field descriptor of the stored mesh."""
+"""Stage `describe`: shape context, spin image, shape diameter and light-field descriptor of the working mesh."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -13,7 +13,7 @@ from partwise.store.block_kinds import FEATURES
 from partwise.store.blocks import BlockKind
 from partwise.store.quantise import quantise
 from partwise_workers.stage import RunStage, ShapeInputs, StageResult
-from partwise_workers.stages import mesh as mesh_stage
+from partwise_workers.stages import remesh
 
 NAME = "describe"
 
@@ -30,7 +30,7 @@ class DescribeStage:
 
     @property
     def reads(self) -> str:
-        return mesh_stage.NAME
+        return remesh.NAME
 
     @property
     def block_kind(self) -> BlockKind:
@@ -53,7 +53,7 @@ class DescribeStage:
 
 
 def _describe(describer: Describer, inputs: ShapeInputs) -> StageResult:
-    mesh = mesh_stage.stored_mesh(inputs)
+    mesh = remesh.working_mesh(inputs)
     description = describer.describe(mesh)
     shape_context = quantise(description.shape_context)
     spin_image = quantise(description.spin_image)

@@ -16,7 +16,7 @@ from partwise.store.blocks import BlockKind
 from partwise_workers.model_store import ModelReference, read_model
 from partwise_workers.stage import RunStage, ShapeInputs, StageResult
 from partwise_workers.stages import describe
-from partwise_workers.stages.mesh import stored_mesh
+from partwise_workers.stages.remesh import working_mesh
 
 if TYPE_CHECKING:
     from partwise.learning.model import TrainedModel
@@ -67,7 +67,7 @@ def _evaluate(model: "TrainedModel", version: int, inputs: ShapeInputs) -> Stage
         for branch in model.spec.branches
     }
     probabilities = predict(model, grids, device="cpu").probabilities  # an actor has a core, no card
-    mesh = stored_mesh(inputs)
+    mesh = working_mesh(inputs)
     areas = face_areas(mesh)
     predicted = np.argmax(probabilities, axis=1)
     area = np.bincount(predicted, areas, minlength=len(model.part_ids))

@@ -13,7 +13,7 @@ from partwise.store.block_kinds import REFINEMENT
 from partwise.store.blocks import BlockKind
 from partwise_workers.stage import RunStage, ShapeInputs, StageResult
 from partwise_workers.stages import evaluate
-from partwise_workers.stages.mesh import stored_mesh
+from partwise_workers.stages.remesh import working_mesh
 
 NAME = "refine"
 
@@ -51,7 +51,7 @@ class RefineStage:
     def _run(self, inputs: ShapeInputs) -> StageResult:
         probabilities = inputs.array(evaluate.NAME, "probabilities").astype(np.float64)
         part_ids = inputs.array(evaluate.NAME, "part_ids")
-        mesh = stored_mesh(inputs)
+        mesh = working_mesh(inputs)
         refined = refine(mesh, probabilities, self.parameters)
         changed = float(np.mean(refined != np.argmax(probabilities, axis=1)))
         summary = {
