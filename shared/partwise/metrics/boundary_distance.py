@@ -38,7 +38,8 @@ def boundary_distance(mesh: TriMesh, predicted: Int[np.ndarray, " m"], truth: In
     A directed distance is the mean, weighted by length, over one labelling's boundary edges, of the Euclidean distance
     from the edge's midpoint to the nearest point on a boundary edge of the other. It asks where boundaries are, not
     which parts they separate. Edges of a face whose truth is −1 count for neither; a predicted −1 is a label like any.
-    Without a boundary in either labelling it is 0; without one in exactly one, 1. Edges without length count for neither.
+    Without a boundary in either labelling it is 0; without one in exactly one it is 1. Edges without
+    length count for neither.
 
     Raises
     ------
