@@ -10,13 +10,14 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from ray import cloudpickle
 
+from partwise.config import StageLimits
 from partwise.errors import MeshError, NotFoundError
 from partwise.store.array_store import ArrayStore
 from partwise.store.blocks import BlockKind, Domain, Quantity
@@ -24,6 +25,7 @@ from partwise.store.records import Collection, StageRun
 from partwise.workspace.ingest import ingest_folder
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
+from partwise_workers.events import OnEvent, ignore_events
 from partwise_workers.plan import plan_tasks
 from partwise_workers.publishing import AlsoPublish, nothing_else
 from partwise_workers.runner import StageRunner
@@ -108,6 +110,7 @@ class Bench:
     log: Path
     shapes: Mapping[str, int]
     stages: tuple[FakeStage, ...]
+    limits: StageLimits = field(default_factory=StageLimits)
 
     def with_stages(self, **changes: Mapping[str, object]) -> "Bench":
         """The same bench with other stages: keyword `second={"parameter": 1}` changes the stage `second`."""
@@ -119,13 +122,22 @@ class Bench:
         workers = replace(config.workers, **changes)
         return replace(self, workspace=replace(self.workspace, config=replace(config, workers=workers)))
 
+    def with_limits(self, **changes: float) -> "Bench":
+        """The same bench with other limits for all its stages."""
+        return replace(self, limits=replace(self.limits, **changes))
+
     def run(
-        self, on_progress: OnRunProgress = lambda progress: None, also_publish: AlsoPublish = nothing_else
+        self,
+        on_progress: OnRunProgress = lambda progress: None,
+        also_publish: AlsoPublish = nothing_else,
+        on_event: OnEvent = ignore_events,
     ) -> RunProgress:
         """Runs what is not done yet on the connected Ray."""
         n_total = sum(1 for _ in self.plan())
         ws = self.workspace
-        runner = StageRunner(ws.catalog, ws.arrays, ws.array_url, self.stages, ws.config.workers, also_publish)
+        runner = StageRunner(
+            ws.catalog, ws.arrays, ws.array_url, self.stages, ws.config.workers, also_publish, on_event, self.limits
+        )
         return runner.run(self.plan(), n_total, on_progress)
 
     def plan(self, stages: Sequence[Stage] | None = None, earlier: Sequence[Stage] = ()) -> Iterator:

@@ -31,7 +31,7 @@ def ran(
     bench_in: Callable[[Path, Mapping[str, str]], AbstractContextManager],
 ) -> Iterator:
     with bench_in(tmp_path_factory.mktemp("runner"), SOURCES) as bench:
-        bench = bench.with_workers(deadline_s=DEADLINE_S, block_shapes=BLOCK_SHAPES, max_attempts=2)
+        bench = bench.with_workers(block_shapes=BLOCK_SHAPES, max_attempts=2).with_limits(deadline_s=DEADLINE_S)
         progress: list[RunProgress] = []
         bench.run(progress.append)
         yield bench, progress
@@ -80,8 +80,8 @@ def test_what_a_shape_finished_before_it_was_given_up_is_kept(ran) -> None:
 def test_a_shape_that_outlasts_the_deadline_is_given_up(ran) -> None:
     run = ran[0].failed("first")["hangs.off"]
     assert run.reason is not None
-    assert f"deadline_s = {DEADLINE_S:g}" in run.reason
-    assert run.attempts == 2
+    assert f"deadline_s = {DEADLINE_S:g}; raise deadline_s under [workers.limits.first]" in run.reason
+    assert run.attempts == 1
 
 
 def test_progress_counts_each_shape_once(ran) -> None:

@@ -2,23 +2,29 @@
 
 import json
 import logging
+import os
 import time
 import traceback
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 
 import numpy as np
 import ray
 
-from partwise.errors import NotFoundError, PartwiseError, StoreError
+from partwise.config import StageLimits
+from partwise.errors import NotFoundError, PartwiseError, StageRefusedError, StoreError
 from partwise.store.array_store import ArrayStore, BlockAddress
 from partwise.store.blocks import BlockKind
 from partwise.store.open import open_array_store
 from partwise.store.ragged import ragged_quantities
+from partwise.store.records import FailureKind
+from partwise_workers.last_words import last_words_name, note_step, progress_name
+from partwise_workers.sentinel import resident_bytes
 from partwise_workers.stage import RunStage, Stage, StageResult
-from partwise_workers.tasks import ShapeOutcome, ShapeTask, StagedName, StagedResult, StageFailure
+from partwise_workers.tasks import ShapeTask, StageCall, StagedName, StagedResult, StageFailure, StageReport
+from partwise_workers.watch import Sentinel, Unwatched, Watch
 
 logger = logging.getLogger(__name__)
 
@@ -30,98 +36,144 @@ MAX_REASON = 500
 
 
 class _TaskInputs:
-    """Implements `ShapeInputs`: arrays made earlier in this task, else read from their blocks."""
+    """Implements `ShapeInputs`: arrays made earlier of this shape, else read from their blocks."""
 
     def __init__(self, arrays: ArrayStore, task: ShapeTask) -> None:
         self._arrays = arrays
-        self._task = task
+        self.task = task
         self._made: dict[str, Mapping[str, np.ndarray]] = {}
 
     def source(self) -> tuple[bytes, str]:
-        return self._arrays.get_bytes(self._task.source_object), self._task.source_key
+        return self._arrays.get_bytes(self.task.source_object), self.task.source_key
 
     def array(self, stage: str, quantity: str) -> np.ndarray:
         if stage in self._made:
             return self._made[stage][quantity]
-        place = self._task.finished[stage]
+        place = self.task.finished[stage]
         return self._arrays.read(place.block_name, place.row, quantity)
-
-    @property
-    def failed_steps(self) -> Mapping[str, str]:
-        return {}
-
-    def begin(self, step: str) -> None:
-        pass
 
     def add(self, stage: str, made: Mapping[str, np.ndarray]) -> None:
         self._made[stage] = made
 
 
+class _CallInputs:
+    """Implements `ShapeInputs` for one try of one stage: a task's inputs, and the stage's steps."""
+
+    def __init__(self, inputs: _TaskInputs, call: StageCall, on_step: Callable[[str], None]) -> None:
+        self.source = inputs.source
+        self.array = inputs.array
+        self._failed_steps = call.failed_steps
+        self._on_step = on_step
+
+    @property
+    def failed_steps(self) -> Mapping[str, str]:
+        return self._failed_steps
+
+    def begin(self, step: str) -> None:
+        self._on_step(step)
+
+
 class _StageWorker:
-    """Runs stages on one shape at a time. `start` comes first; what it opens lives as long as the actor.
+    """Runs one stage on one shape at a time. `start` comes first; what it opens lives as long as the actor.
 
     What a stage raises is the shape's fault and comes back as its failure. What `start` raises, and a store that
     refuses or cannot be reached, is not, and goes to the driver as an exception, which ends the run.
+
+    Parameters
+    ----------
+    actor_id : unique; the last words of this process are staged under it.
+    limits : of each stage. The sentinel bounds memory by them; None: the process is not the actor's own to watch.
     """
 
-    def __init__(self, array_url: str, stages: Sequence[Stage]) -> None:
+    def __init__(
+        self,
+        array_url: str,
+        stages: Sequence[Stage],
+        actor_id: str = "",
+        limits: Mapping[str, StageLimits] | None = None,
+    ) -> None:
         self._array_url = array_url
         self._stages = {stage.name: stage for stage in stages}
+        self._actor_id = actor_id
+        self._limits = limits
         self._opened: dict[str, RunStage] = {}
         self._stack = ExitStack()
+        self._watch: Watch = Unwatched()
+        self._inputs: _TaskInputs | None = None
 
-    def start(self) -> None:
-        """Opens the store and the stages."""
+    def start(self) -> int:
+        """Opens the store and the stages; returns the memory of the process, in bytes."""
+        if self._limits is not None:
+            self._watch = Sentinel(self._array_url)
         self._arrays: ArrayStore = open_array_store(self._array_url)
         for name, stage in self._stages.items():
             self._opened[name] = self._stack.enter_context(stage.open(self._arrays))
+        return resident_bytes(os.getpid())
 
     def close(self) -> None:
         """Closes what `start` opened."""
         self._stack.close()
 
-    def run(self, task: ShapeTask) -> ShapeOutcome:
-        """Runs the task's stages, one after the other, until one fails."""
-        inputs = _TaskInputs(self._arrays, task)
-        results: list[StagedResult] = []
-        for stage, key in task.stage_keys:
-            name = str(StagedName(stage, task.shape_id, key))
-            made = self._staged(name)
-            if made is None:
-                started = time.perf_counter()
-                try:
-                    made = self._make(stage, inputs, started)
-                except Exception as error:  # noqa: BLE001 - the task's edge: one bad mesh never costs the run
-                    if isinstance(error, StoreError):
-                        self._require_store()
-                    failure = _failure(stage, key, error, time.perf_counter() - started)
-                    return ShapeOutcome(task.shape_id, tuple(results), failure)
-                self._arrays.stage(name, made)
-            inputs.add(stage, made)
-            results.append(_staged_result(stage, key, name, made))
-        return ShapeOutcome(task.shape_id, tuple(results))
+    def run(self, call: StageCall) -> StageReport:
+        """Runs a stage, unless its result is staged already. A task's stages are called in order, from the first.
 
-    def give_up(self, task: ShapeTask, reason: str) -> ShapeOutcome:
-        """What earlier attempts, which died, had finished; the stage after that is the one that fails."""
-        results: list[StagedResult] = []
-        for stage, key in task.stage_keys:
-            name = str(StagedName(stage, task.shape_id, key))
-            made = self._staged(name)
-            if made is None:
-                return ShapeOutcome(task.shape_id, tuple(results), StageFailure(stage, key, reason, 0.0))
-            results.append(_staged_result(stage, key, name, made))
-        return ShapeOutcome(task.shape_id, tuple(results))
-
-    def _staged(self, name: str) -> Mapping[str, np.ndarray] | None:
-        """A result that an earlier attempt or run left; None if there is none, or a damaged one to be made again."""
+        What they make is kept for those after them until another task comes.
+        """
+        if self._inputs is None or self._inputs.task != call.task:
+            self._inputs = _TaskInputs(self._arrays, call.task)
+        self._begin(call, None)
         try:
-            return self._arrays.read_staged(name)
+            made = self._result_of(call, self._inputs)
+        finally:
+            self._watch.idle()
+        if isinstance(made, StageFailure) or call.stage == call.task.stage_keys[-1][0]:
+            self._inputs = None  # holds arrays
+        else:
+            self._inputs.add(call.stage, made)
+        result = made if isinstance(made, StageFailure) else _staged_result(call, made)
+        return StageReport(result, resident_bytes(os.getpid()))
+
+    def _result_of(self, call: StageCall, inputs: _TaskInputs) -> Mapping[str, np.ndarray] | StageFailure:
+        if (staged := self._staged(call.name)) is not None:
+            return staged
+        self._forget_steps(call)  # what an earlier run left would be blamed for what happens now
+        started = time.perf_counter()
+        result: Mapping[str, np.ndarray] | StageFailure
+        try:
+            result = self._make(call, inputs, started)
+        except Exception as error:  # noqa: BLE001 - the task's edge: one bad mesh never costs the run
+            if isinstance(error, StoreError):
+                self._require_store()
+            result = _failure(call, error, time.perf_counter() - started)
+        else:
+            self._arrays.stage(str(call.name), result)
+        self._forget_steps(call)
+        return result
+
+    def _forget_steps(self, call: StageCall) -> None:
+        if self._stages[call.stage].n_steps > 1:
+            self._arrays.delete_staged(progress_name(call.name))
+
+    def _begin(self, call: StageCall, step: str | None) -> None:
+        """Tells the driver and the sentinel which step the stage is in, None before the first."""
+        if step is not None:
+            note_step(self._arrays, call.name, step)
+        if self._limits is not None:
+            self._watch.at(last_words_name(call.name, self._actor_id), self._limits[call.stage].memory_gb)
+
+    def _staged(self, name: StagedName) -> Mapping[str, np.ndarray] | None:
+        """A result that an earlier try or run left; None if there is none, or a damaged one to be made again."""
+        try:
+            return self._arrays.read_staged(str(name))
         except (NotFoundError, StoreError):
             return None
 
-    def _make(self, stage: str, inputs: _TaskInputs, started: float) -> dict[str, np.ndarray]:
-        result: StageResult = self._opened[stage](inputs)
-        ragged_quantities(self._stages[stage].block_kind, [result.arrays])  # refused here, it costs only this shape
+    def _make(self, call: StageCall, inputs: _TaskInputs, started: float) -> dict[str, np.ndarray]:
+        own = _CallInputs(inputs, call, lambda step: self._begin(call, step))
+        result: StageResult = self._opened[call.stage](own)
+        ragged_quantities(
+            self._stages[call.stage].block_kind, [result.arrays]
+        )  # refused here, it costs only this shape
         account = json.dumps({"summary": result.summary, "seconds": time.perf_counter() - started})
         return {**result.arrays, ACCOUNT: np.frombuffer(account.encode(), dtype=np.uint8)}
 
@@ -132,17 +184,20 @@ class _StageWorker:
         self._arrays.delete_staged(probe)
 
 
-def _staged_result(stage: str, key: str, name: str, made: Mapping[str, np.ndarray]) -> StagedResult:
+def _staged_result(call: StageCall, made: Mapping[str, np.ndarray]) -> StagedResult:
     account = json.loads(made[ACCOUNT].tobytes())
     n_bytes = sum(array.nbytes for array in made.values())
-    return StagedResult(stage, key, name, n_bytes, account["seconds"], account["summary"])
+    return StagedResult(call.stage, call.key, str(call.name), n_bytes, account["seconds"], account["summary"])
 
 
-def _failure(stage: str, key: str, error: Exception, seconds: float) -> StageFailure:
+def _failure(call: StageCall, error: Exception, seconds: float) -> StageFailure:
+    kind = FailureKind.MEMORY if isinstance(error, MemoryError) else FailureKind.ERROR
     if isinstance(error, PartwiseError):
-        return StageFailure(stage, key, str(error), seconds)
+        known = error.detail if isinstance(error, StageRefusedError) else {}
+        return StageFailure(call.stage, call.key, kind, str(error), seconds, known)
     reason = f"{type(error).__name__}: {error}".strip().splitlines()[0][:MAX_REASON]
-    return StageFailure(stage, key, reason, seconds, "".join(traceback.format_exception(error)))
+    detail = {"traceback": "".join(traceback.format_exception(error))}
+    return StageFailure(call.stage, call.key, kind, reason, seconds, detail)
 
 
 @dataclass(frozen=True, slots=True)

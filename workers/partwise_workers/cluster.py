@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import ray
 
-from partwise_workers.errors import WorkerError
+from partwise.errors import WorkerError
 
 logger = logging.getLogger(__name__)
 

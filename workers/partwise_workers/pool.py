@@ -1,10 +1,11 @@
-"""`ActorPool`: one shape per actor at a time, with a deadline; actors that die are replaced, their shapes tried again.
+"""`ActorPool`: one shape per actor at a time, stage by stage, within deadlines; actors that die are replaced.
 
-Tasks go only to actors that have started, so that a deadline never counts the wait for a free core.
+Calls go only to actors that have started, so that a deadline never counts the wait for a free core.
 """
 
 import logging
 import time
+import uuid
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,9 +14,14 @@ from typing import Any, TypeAlias
 import ray
 from ray.exceptions import RayError, RayTaskError
 
-from partwise.errors import PartwiseError
-from partwise_workers.errors import WorkerError
-from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageFailure
+from partwise.errors import PartwiseError, WorkerError
+from partwise.store.array_store import ArrayStore
+from partwise.store.records import FailureKind
+from partwise_workers.events import ActorRestarted, OnEvent, ignore_events
+from partwise_workers.last_words import LastWords, last_words_name, take_last_words, take_step
+from partwise_workers.supervision import Death, Job, Rules, why_large, why_late
+from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageFailure, StageReport
+from partwise_workers.watch import BYTES_PER_GB
 
 logger = logging.getLogger(__name__)
 
@@ -28,43 +34,70 @@ MAX_FAILED_STARTS = 3
 CLOSING_S = 5.0
 """Seconds that an idle actor has to close its renderer before it is killed."""
 
+LAST_WORDS_S = 10.0
+"""Seconds that a dead actor's sentinel has to tell why. It takes about one, on a busy machine several."""
+
+RETAINED_SHARE = 0.5
+"""Of the memory between a new actor's and the lowest ceiling: one that holds more between two stages is replaced."""
+
 
 @dataclass(slots=True)
-class _Attempt:
-    """A task's `number`-th try. With `last_words`, it is given up, and only what was finished is asked for."""
+class _Worker:
+    """An actor, how many shapes it has had, and the memory that its process had when it was ready."""
 
-    task: ShapeTask
-    number: int = 1
-    last_words: str = ""
-    seconds: float = 0.0
+    actor: Actor
+    id: str
+    n_shapes: int = 0
+    base_bytes: int = 0
 
 
 @dataclass(slots=True)
 class _Running:
-    attempt: _Attempt
-    actor: Actor
+    job: Job
+    worker: _Worker
     started: float
 
 
 @dataclass(frozen=True, slots=True)
-class Finished:
-    """A task's outcome and how many attempts it took."""
+class _Dead:
+    """A job whose process died; `kind` and `why` are what the driver knows, the last words may know better."""
 
-    outcome: ShapeOutcome
-    attempts: int
+    job: Job
+    kind: FailureKind
+    why: str
+    seconds: float
+    words_as: str
+    until: float
 
 
 class ActorPool:
-    """Needs a connected Ray. `new_actor` makes an actor whose `start`, `run`, `give_up` and `close` are a worker's."""
+    """Needs a connected Ray.
 
-    def __init__(self, new_actor: Callable[[], Actor], n_actors: int, deadline_s: float, max_attempts: int) -> None:
+    Parameters
+    ----------
+    new_actor : makes an actor whose `start`, `run` and `close` are a stage worker's, of its id.
+    arrays : where dead actors' last words are.
+    """
+
+    def __init__(
+        self,
+        new_actor: Callable[[str], Actor],
+        n_actors: int,
+        rules: Rules,
+        arrays: ArrayStore,
+        on_event: OnEvent = ignore_events,
+    ) -> None:
         self._new_actor = new_actor
-        self._deadline_s = deadline_s
-        self._max_attempts = max_attempts
-        self._starting: dict[Reference, Actor] = {}
-        self._idle: list[Actor] = []
+        self._rules = rules
+        self._arrays = arrays
+        self._on_event = on_event
+        self._lowest_ceiling = BYTES_PER_GB * min(limits.memory_gb for limits in rules.limits.values())
+        self._starting: dict[Reference, _Worker] = {}
+        self._idle: list[_Worker] = []
         self._running: dict[Reference, _Running] = {}
-        self._again: deque[_Attempt] = deque()
+        self._dead: list[_Dead] = []
+        self._closing: dict[Reference, tuple[_Worker, float]] = {}
+        self._again: deque[Job] = deque()
         self._n_failed_starts = 0
         for _ in range(n_actors):
             self._start_actor()
@@ -75,19 +108,29 @@ class ActorPool:
         return len(self._idle) > len(self._again)
 
     @property
+    def n_in_flight(self) -> int:
+        """Tasks submitted that have not finished."""
+        return len(self._running) + len(self._dead) + len(self._again)
+
+    @property
     def is_done(self) -> bool:
         """Whether every task submitted has finished."""
-        return not self._running and not self._again
+        return self.n_in_flight == 0
+
+    @property
+    def is_mourning(self) -> bool:
+        """Whether last words are waited for, which `references` do not announce."""
+        return bool(self._dead)
 
     def submit(self, task: ShapeTask) -> None:
         """Starts a task; only while `has_room`."""
-        self._begin(_Attempt(task))
+        self._begin(Job(task))
 
     def references(self) -> list[Reference]:
-        """What to wait for: actors that are starting, tasks that are running."""
-        return [*self._starting, *self._running]
+        """What to wait for: actors that are starting or closing, stages that are running."""
+        return [*self._starting, *self._closing, *self._running]
 
-    def collect(self, ready: Sequence[Reference]) -> list[Finished]:
+    def collect(self, ready: Sequence[Reference]) -> list[ShapeOutcome]:
         """Takes in what is ready among `references`, looks at deadlines, and starts again what is to be tried again.
 
         Raises
@@ -101,31 +144,36 @@ class ActorPool:
                 self._welcome(reference)
             elif reference in self._running:
                 finished += self._take(reference)
-        finished += self._stop_late_ones()
+        self._stop_late_ones()
+        finished += self._bury_the_dead()
+        self._dismiss(ready)
         while self._idle and self._again:
             self._begin(self._again.popleft())
         return finished
 
     def close(self) -> None:
         """Lets idle actors close what they opened, then ends all."""
-        closing = [actor.close.remote() for actor in self._idle]
-        actors = [*self._idle, *self._starting.values(), *(running.actor for running in self._running.values())]
-        self._idle, self._starting, self._running = [], {}, {}
+        closing = [worker.actor.close.remote() for worker in self._idle]
+        leaving = [worker for worker, _ in self._closing.values()]
+        working = [running.worker for running in self._running.values()]
+        workers = [*self._idle, *self._starting.values(), *leaving, *working]
+        self._idle, self._starting, self._running, self._closing = [], {}, {}, {}
         if closing:
             ray.wait(closing, num_returns=len(closing), timeout=CLOSING_S)
-        for actor in actors:
-            ray.kill(actor)
+        for worker in workers:
+            ray.kill(worker.actor)
 
     def _start_actor(self) -> None:
-        actor = self._new_actor()
-        self._starting[actor.start.remote()] = actor
+        worker_id = uuid.uuid4().hex
+        worker = _Worker(self._new_actor(worker_id), worker_id)
+        self._starting[worker.actor.start.remote()] = worker
 
     def _welcome(self, reference: Reference) -> None:
-        actor = self._starting.pop(reference)
+        worker = self._starting.pop(reference)
         try:
-            ray.get(reference)
+            worker.base_bytes = ray.get(reference)
         except RayError as error:
-            ray.kill(actor)
+            ray.kill(worker.actor)
             raise_own(error)
             self._n_failed_starts += 1
             logger.warning("a worker process did not start", extra={"why": first_line(error)})
@@ -137,54 +185,109 @@ class ActorPool:
             self._start_actor()
         else:
             self._n_failed_starts = 0
-            self._idle.append(actor)
+            self._idle.append(worker)
 
-    def _begin(self, attempt: _Attempt) -> None:
-        actor = self._idle.pop()
-        if attempt.last_words:
-            reference = actor.give_up.remote(attempt.task, attempt.last_words)
-        else:
-            reference = actor.run.remote(attempt.task)
-        self._running[reference] = _Running(attempt, actor, time.monotonic())
+    def _begin(self, job: Job) -> None:
+        worker = self._idle.pop()
+        worker.n_shapes += 1
+        self._call(job, worker)
 
-    def _take(self, reference: Reference) -> list[Finished]:
+    def _call(self, job: Job, worker: _Worker) -> None:
+        """Sends the job's next stage."""
+        self._running[worker.actor.run.remote(job.begin())] = _Running(job, worker, time.monotonic())
+
+    def _take(self, reference: Reference) -> list[ShapeOutcome]:
         running = self._running.pop(reference)
+        job, worker = running.job, running.worker
         try:
-            outcome: ShapeOutcome = ray.get(reference)
+            report: StageReport = ray.get(reference)
         except RayError as error:
             raise_own(error)
-            remedy = "look at this shape's file, or let fewer actors share the memory ([workers] n_actors)"
-            return self._after_death(running, f"its process died ({first_line(error)})", remedy)
-        self._idle.append(running.actor)
-        return [Finished(outcome, running.attempt.number)]
+            self._lose(running, FailureKind.CRASH, f"its process died ({first_line(error)})")
+            return []
+        is_bloated = self._is_bloated(worker, report.resident_bytes)
+        failure: StageFailure | None = None
+        if isinstance(report.result, StageFailure):
+            failure = report.result
+        else:
+            job.add(report.result)
+        goes_on = failure is None and not job.is_done
+        if goes_on and (job.was_moved or not is_bloated):
+            self._call(job, worker)
+            return []
+        if is_bloated or worker.n_shapes >= self._rules.recycle_after:
+            self._recycle(worker)
+        else:
+            self._idle.append(worker)
+        if goes_on:
+            job.was_moved = True
+            job.restart()
+            self._again.append(job)
+            return []
+        return [job.outcome(failure)]
 
-    def _stop_late_ones(self) -> list[Finished]:
+    def _is_bloated(self, worker: _Worker, resident_bytes: int) -> bool:
+        """Whether the next stage would be blamed for memory that this process did not give back."""
+        return resident_bytes - worker.base_bytes > RETAINED_SHARE * (self._lowest_ceiling - worker.base_bytes)
+
+    def _stop_late_ones(self) -> None:
         now = time.monotonic()
-        late = [reference for reference, r in self._running.items() if now - r.started > self._deadline_s]
+        for reference, running in list(self._running.items()):
+            limits = self._rules.limits[running.job.call.stage]
+            if now - running.started > limits.deadline_s:
+                del self._running[reference]
+                self._lose(running, FailureKind.DEADLINE, why_late(limits))
+
+    def _lose(self, running: _Running, kind: FailureKind, why: str) -> None:
+        """Replaces the actor, and waits for its last words."""
+        ray.kill(running.worker.actor)
+        self._start_actor()
+        now = time.monotonic()
+        words_as = last_words_name(running.job.call.name, running.worker.id)
+        self._dead.append(_Dead(running.job, kind, why, now - running.started, words_as, now + LAST_WORDS_S))
+
+    def _bury_the_dead(self) -> list[ShapeOutcome]:
         finished = []
-        for reference in late:
-            why = f"it took longer than deadline_s = {self._deadline_s:g}"
-            remedy = "raise deadline_s under [workers], or simplify its file"
-            finished += self._after_death(self._running.pop(reference), why, remedy)
+        for dead in list(self._dead):
+            words = take_last_words(self._arrays, dead.words_as)
+            if words is None and time.monotonic() < dead.until:
+                continue
+            self._dead.remove(dead)
+            death = self._death(dead, words or LastWords())
+            about = {"shape": dead.job.task.source_key, "n": dead.job.n_tries, "why": death.why}
+            logger.warning("attempt failed", extra=about)
+            self._on_event(ActorRestarted(death.kind))
+            failure = dead.job.bury(death, self._rules)
+            if failure is None:
+                self._again.append(dead.job)
+            else:
+                finished.append(dead.job.outcome(failure))
         return finished
 
-    def _after_death(self, running: _Running, why: str, remedy: str) -> list[Finished]:
-        """Replaces the actor and tries the shape again, or gives it up."""
-        ray.kill(running.actor)
+    def _death(self, dead: _Dead, words: LastWords) -> Death:
+        call = dead.job.call
+        has_steps = self._rules.n_steps[call.stage] > 1
+        step = take_step(self._arrays, call.name) if has_steps else None
+        kind, why = dead.kind, dead.why
+        if words.is_over_memory:
+            kind, why = FailureKind.MEMORY, why_large(self._rules.limits[call.stage], words.peak_bytes)
+        elif kind is FailureKind.CRASH and words.fatal_error is not None:
+            why = f"its process died ({words.fatal_error})"
+        return Death(kind, why, step, words.log, dead.seconds)
+
+    def _recycle(self, worker: _Worker) -> None:
+        """Replaces an actor that has done its share, or holds too much."""
+        self._closing[worker.actor.close.remote()] = (worker, time.monotonic() + CLOSING_S)
         self._start_actor()
-        attempt = running.attempt
-        logger.warning("attempt failed", extra={"shape": attempt.task.source_key, "n": attempt.number, "why": why})
-        if attempt.last_words:  # not even what was finished can be told
-            stage, key = attempt.task.stage_keys[0]
-            failure = StageFailure(stage, key, attempt.last_words, attempt.seconds)
-            return [Finished(ShapeOutcome(attempt.task.shape_id, (), failure), attempt.number)]
-        seconds = time.monotonic() - running.started
-        if attempt.number < self._max_attempts:
-            self._again.append(_Attempt(attempt.task, attempt.number + 1))
-        else:
-            times = "" if attempt.number == 1 else f", {attempt.number} times"
-            self._again.append(_Attempt(attempt.task, attempt.number, f"{why}{times}; {remedy}", seconds))
-        return []
+        self._on_event(ActorRestarted(None))
+
+    def _dismiss(self, ready: Sequence[Reference]) -> None:
+        """Ends actors that have closed what they opened, or take too long to."""
+        now = time.monotonic()
+        for reference, (worker, until) in list(self._closing.items()):
+            if reference in ready or now > until:
+                del self._closing[reference]
+                ray.kill(worker.actor)
 
 
 def raise_own(error: RayError) -> None:

@@ -11,11 +11,11 @@ from typing import Any
 import ray
 from ray.exceptions import RayError
 
+from partwise.errors import WorkerError
 from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import StageCatalog
 from partwise.store.records import NewBlock, NewMesh, NewScore, NewStageRun
 from partwise_workers.actors import Packed
-from partwise_workers.errors import WorkerError
 from partwise_workers.pool import Actor, Reference, first_line, raise_own
 from partwise_workers.stage import Stage
 from partwise_workers.tasks import StagedResult

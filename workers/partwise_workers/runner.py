@@ -10,29 +10,37 @@ from collections.abc import Iterator, Sequence
 
 import ray
 
-from partwise.config import WorkersConfig
+from partwise.config import StageLimits, WorkersConfig
 from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import StageCatalog
 from partwise.store.records import NewFailure
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise_workers.actors import Packer, StageWorker
 from partwise_workers.cluster import Crew, cores, thread_environment
-from partwise_workers.pool import Actor, ActorPool, Finished
+from partwise_workers.events import InFlight, OnEvent, StageDone, StageFailed, ignore_events
+from partwise_workers.pool import Actor, ActorPool
 from partwise_workers.publishing import AlsoPublish, Publisher, nothing_else
 from partwise_workers.stage import Stage
-from partwise_workers.tasks import ShapeTask
+from partwise_workers.supervision import Rules, limits_of
+from partwise_workers.tasks import ShapeOutcome, ShapeTask
 
 logger = logging.getLogger(__name__)
 
 POLL_S = 1.0
 """How often deadlines are looked at while no actor has anything to report."""
 
+MOURNING_POLL_S = 0.2
+"""How often last words are looked for: they come through the array store, which announces nothing."""
+
 PATIENCE_S = 60.0
 """Seconds without any process at work after which the log says what is waited for."""
 
 
 class StageRunner:
-    """One run of stages over many shapes. Use once: `run`, from within `cluster.connected()`."""
+    """One run of stages over many shapes. Use once: `run`, from within `cluster.connected()`.
+
+    default_limits : of stages that the configuration does not know.
+    """
 
     def __init__(
         self,
@@ -42,13 +50,23 @@ class StageRunner:
         stages: Sequence[Stage],
         config: WorkersConfig,
         also_publish: AlsoPublish = nothing_else,
+        on_event: OnEvent = ignore_events,
+        default_limits: StageLimits | None = None,
     ) -> None:
         self._catalog = catalog
+        self._arrays = arrays
         self._array_url = array_url
         self._stages = list(stages)
         self._config = config
         self._publisher = Publisher(catalog, arrays, self._new_packer, stages, config.block_shapes, also_publish)
-        self._n_done = self._n_failed = 0
+        self._on_event = on_event
+        self._rules = Rules(
+            {stage.name: limits_of(config.limits, stage.name, default_limits or StageLimits()) for stage in stages},
+            {stage.name: stage.n_steps for stage in stages},
+            config.max_attempts,
+            config.recycle_after,
+        )
+        self._n_done = self._n_failed = self._n_in_flight = 0
 
     def run(self, tasks: Iterator[ShapeTask], n_total: int, on_progress: OnRunProgress) -> RunProgress:
         """Works through the tasks. On Ctrl-C what is finished is still published before the interrupt goes on.
@@ -61,7 +79,11 @@ class StageRunner:
         """
         crew = Crew.of(cores(), n_total, self._config.n_actors)
         pool = ActorPool(
-            lambda: self._new_worker(crew.n_threads), crew.n_actors, self._config.deadline_s, self._config.max_attempts
+            lambda actor_id: self._new_worker(actor_id, crew.n_threads),
+            crew.n_actors,
+            self._rules,
+            self._arrays,
+            self._on_event,
         )
         try:
             self._work(pool, tasks, n_total, on_progress)
@@ -81,33 +103,37 @@ class StageRunner:
             while task is not None and pool.has_room and self._publisher.has_room:
                 pool.submit(task)
                 task = next(tasks, None)
+            self._note_in_flight(pool.n_in_flight)
             active_at = self._note_idleness(pool, active_at)
-            ready, _ = ray.wait([*pool.references(), *self._publisher.references()], num_returns=1, timeout=POLL_S)
+            timeout = MOURNING_POLL_S if pool.is_mourning else POLL_S
+            ready, _ = ray.wait([*pool.references(), *self._publisher.references()], num_returns=1, timeout=timeout)
             self._publisher.collect(ready)
-            for finished in pool.collect(ready):
-                self._record(finished)
+            for outcome in pool.collect(ready):
+                self._record(outcome)
                 on_progress(RunProgress(self._n_done, self._n_failed, n_total))
+        self._note_in_flight(0)
 
-    def _record(self, finished: Finished) -> None:
-        outcome, failure = finished.outcome, finished.outcome.failure
+    def _record(self, outcome: ShapeOutcome) -> None:
+        failure = outcome.failure
         for result in outcome.results:
-            self._publisher.add(outcome.shape_id, result, finished.attempts)
+            self._publisher.add(outcome.shape_id, result, outcome.tries[result.stage])
+            self._on_event(StageDone(result.stage, result.seconds))
         if failure is None:
             self._n_done += 1
             return
         self._n_failed += 1
-        detail = {"traceback": failure.detail} if failure.detail else {}
+        n_tries = outcome.tries[failure.stage]
         self._catalog.record_failure(
             NewFailure(
-                outcome.shape_id,
-                failure.stage,
-                failure.key,
-                failure.reason,
-                finished.attempts,
-                failure.seconds,
-                detail,
+                outcome.shape_id, failure.stage, failure.key, failure.reason, n_tries, failure.seconds, failure.detail
             )
         )
+        self._on_event(StageFailed(failure.stage, failure.kind))
+
+    def _note_in_flight(self, n_in_flight: int) -> None:
+        if n_in_flight != self._n_in_flight:
+            self._n_in_flight = n_in_flight
+            self._on_event(InFlight(n_in_flight))
 
     def _note_idleness(self, pool: ActorPool, active_at: float) -> float:
         """Says so once a minute while no process could be started yet; returns since when nothing runs."""
@@ -117,10 +143,10 @@ class StageRunner:
         logger.warning("waiting for worker processes to start; has the cluster a free core?")
         return now
 
-    def _new_worker(self, n_threads: int) -> Actor:
+    def _new_worker(self, actor_id: str, n_threads: int) -> Actor:
         environment = {"env_vars": thread_environment(n_threads)}
         options = StageWorker.options(num_cpus=n_threads, max_restarts=0, runtime_env=environment)
-        return options.remote(self._array_url, self._stages)
+        return options.remote(self._array_url, self._stages, actor_id, self._rules.limits)
 
     def _new_packer(self) -> Actor:
         environment = {"env_vars": thread_environment(1)}

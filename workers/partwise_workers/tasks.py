@@ -1,10 +1,10 @@
 """What driver and actors tell each other: ids, keys and small summaries, never arrays."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from partwise.store.records import StageRun
+from partwise.store.records import FailureKind, StageRun
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,23 +46,52 @@ class StagedResult:
 
 
 @dataclass(frozen=True, slots=True)
+class StageCall:
+    """One stage of a task, for one actor. `failed_steps` ended processes on earlier tries, each with why."""
+
+    task: ShapeTask
+    stage: str
+    key: str
+    failed_steps: Mapping[str, str]
+
+    @property
+    def name(self) -> "StagedName":
+        """Where its result is staged."""
+        return StagedName(self.stage, self.task.shape_id, self.key)
+
+
+@dataclass(frozen=True, slots=True)
 class StageFailure:
-    """Why a stage gave up on a shape: one line for people, and the traceback where the cause was unforeseen."""
+    """Why a stage gave up on a shape: one line for people; in `detail`, JSON-able, what else is known.
+
+    detail : `traceback` where the cause was unforeseen; of a process that died `log`, the end of what it printed;
+    `steps`, those that ended a process, each with why.
+    """
 
     stage: str
     key: str
+    kind: FailureKind
     reason: str
     seconds: float
-    detail: str = ""
+    detail: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class StageReport:
+    """What an actor says of a call: its result or its failure, and the memory that its process is left with."""
+
+    result: StagedResult | StageFailure
+    resident_bytes: int
 
 
 @dataclass(frozen=True, slots=True)
 class ShapeOutcome:
-    """What became of one task; stages after a failure did not run."""
+    """What became of one task; stages after a failure did not run. `tries` : of each stage."""
 
     shape_id: int
     results: tuple[StagedResult, ...]
-    failure: StageFailure | None = None
+    failure: StageFailure | None
+    tries: Mapping[str, int]
 
 
 @dataclass(frozen=True, slots=True)
