@@ -8,8 +8,9 @@ def runs_of(
     faces: Int[np.ndarray, " k"], values: Integer[np.ndarray, " k"] | None = None
 ) -> tuple[Int[np.ndarray, " r"], Int[np.ndarray, " r"]]:
     """First face and count of each run of consecutive faces, which must ascend; with `values`, of one value each."""
-    is_new = np.diff(faces, prepend=-2) != 1
-    if values is not None and len(values):
+    is_new = np.ones(len(faces), dtype=bool)
+    is_new[1:] = np.diff(faces) != 1
+    if values is not None:
         is_new[1:] |= values[1:] != values[:-1]
     starts = np.flatnonzero(is_new)
     return faces[starts], np.diff(starts, append=len(faces))
