@@ -55,7 +55,7 @@ def settings(
     remesh: Annotated[RemeshPolicy | None, typer.Option(help=REMESH, show_default=False)] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Show or change a collection's settings.  [dim]partwise settings ws --faces 20000[/dim]"""
+    """Show or change settings.  [dim]partwise settings ws --faces 20000[/dim]"""
     from partwise.workspace.settings import change_settings, settings_of
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
@@ -98,7 +98,7 @@ def ingest(
 
 
 def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
-    """Check, remesh and describe new shapes.  [dim]partwise preprocess ws[/dim]"""
+    """Remesh and describe new shapes.  [dim]partwise preprocess ws[/dim]"""
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.status import collection_status
     from partwise.workspace.workspace import open_workspace

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Select, exists, func, select, update
+from sqlalchemy import Connection, Select, exists, func, literal, not_, or_, select, update
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
@@ -165,7 +165,8 @@ def meshes(connection: Connection, shape_ids: SizedIterable[int], role: MeshRole
 def add_meshes(connection: Connection, block_id: int, new_meshes: Sequence[NewMesh], now: datetime) -> None:
     """Record where meshes lie, and that they are their shapes' present ones in their roles.
 
-    A mesh that is known already is found in the new block from now on.
+    A mesh that is known already is found in the new block from now on, except an original that was taken as it is: it
+    stays in the block of originals, which outlives those of working meshes.
     """
     for new in new_meshes:
         known = connection.execute(select(t.mesh).where(t.mesh.c.hash == new.mesh_hash)).first()
@@ -181,9 +182,11 @@ def add_meshes(connection: Connection, block_id: int, new_meshes: Sequence[NewMe
         statement = insert_for(connection, t.shape_mesh).values(
             shape_id=new.shape_id, mesh_hash=new.mesh_hash, block_id=block_id, row=new.row
         )
+        is_original = exists().where(t.shape.c.id == new.shape_id, t.shape.c.original_mesh_hash == new.mesh_hash)
+        moves = or_(literal(new.role is MeshRole.ORIGINAL), t.shape_mesh.c.block_id.is_(None), not_(is_original))
         connection.execute(
             statement.on_conflict_do_update(
-                index_elements=["shape_id", "mesh_hash"], set_={"block_id": block_id, "row": new.row}
+                index_elements=["shape_id", "mesh_hash"], set_={"block_id": block_id, "row": new.row}, where=moves
             )
         )
         present = {_PRESENT[new.role].name: new.mesh_hash}

@@ -145,10 +145,21 @@ class ShapeConformance:
 
     def test_one_mesh_may_be_original_and_working(self, catalog: Catalog) -> None:
         _, (shape_id,) = add_collection(catalog, 1)
-        publish_mesh(catalog, shape_id, 1, MeshRole.ORIGINAL)
-        block_name = publish_mesh(catalog, shape_id, 1)
+        block_name = publish_mesh(catalog, shape_id, 1, MeshRole.ORIGINAL)
+        publish_mesh(catalog, shape_id, 1)
         for found in (catalog.meshes([shape_id]), catalog.original_meshes([shape_id])):
             assert (found[shape_id].mesh_hash, found[shape_id].block_name) == (mesh_hash(shape_id), block_name)
+
+    def test_an_original_taken_as_it_is_outlives_the_block_of_the_working_mesh(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        original = publish_mesh(catalog, shape_id, 1, MeshRole.ORIGINAL)
+        working = new_block(1, "remesh")
+        runs = [NewStageRun(shape_id, "remesh", "k1", 0)]
+        same = NewMesh(shape_id, mesh_hash(shape_id), 5, N_FACES, 0, MeshRole.WORKING)
+        catalog.publish_block(working, runs, meshes=[same])
+        catalog.supersede_block(working.name)
+        catalog.delete_blocks([working.name])
+        assert catalog.original_meshes([shape_id])[shape_id].block_name == original
 
     def test_newest_mesh_is_the_one_published_last(self, catalog: Catalog) -> None:
         _, (shape_id, other) = add_collection(catalog, 2)
