@@ -76,6 +76,13 @@ def test_upgrading_leaves_the_stored_stroke_as_it_is() -> None:
     assert json.dumps(stroke) == kept
 
 
+def test_the_documented_stroke_is_one() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "segmentation.md").read_text()
+    block = page.partition('```json\n{"v": ')[2].partition("```")[0]
+    stroke = stroke_from_document(json.loads('{"v": ' + block))
+    assert stroke.operation == Paint((812, 840), Brush(0.05, 0.766), 3)
+
+
 @settings(max_examples=80, deadline=None)
 @given(data=st.data())
 def test_strokes_come_back(
