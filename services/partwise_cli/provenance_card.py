@@ -133,6 +133,8 @@ def _print_failure(stage: StageCard) -> None:
     kind = f" ({stage.failure.kind})" if stage.failure.kind else ""
     console().print(f"\n[bold red]{stage.stage} failed{kind}[/bold red]", end=" ")
     console().print(stage.failure.reason, markup=False)
+    for step, why in stage.failure.steps:
+        console().print(f"  {step}: {why}", markup=False)
     for line in stage.failure.log:
         console().print(f"  {line}", markup=False, style="dim", soft_wrap=True)
 

@@ -21,6 +21,7 @@ from partwise.store.records import RevisionKind
 from partwise.workspace.ingest import ingest_folder, mesh_files
 from partwise.workspace.labelling import PSB_ENDING, import_labels
 from partwise.workspace.progress import OnRunProgress
+from partwise.workspace.settings import change_settings
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers.cluster import connected
 from partwise_workers.passes import preprocess
@@ -87,6 +88,7 @@ def prepare(folder: Path, workspace_path: Path, on_progress: OnRunProgress) -> P
         if folder.name not in {known.name for known in workspace.catalog.list_collections()}:
             workspace.catalog.create_collection(folder.name, names)
         collection = workspace.catalog.get_collection(folder.name)
+        collection = change_settings(workspace, collection, {"remesh": "never"})  # as in the paper, on the files' faces
         ingested = ingest_folder(workspace, collection, folder)
         with connected():
             preprocess(workspace, collection, on_progress)

@@ -81,10 +81,12 @@ class FailureCard:
     """Why a stage gave the shape up.
 
     kind : error, deadline, memory or crash; empty where it is not on record. log : its last lines.
+    steps : (step, why) of those that had ended a process before.
     """
 
     reason: str
     kind: str
+    steps: tuple[tuple[str, str], ...]
     log: tuple[str, ...]
 
 
@@ -183,7 +185,8 @@ def _stage(run: StageRun) -> StageCard:
 
 def _failure(run: StageRun) -> FailureCard:
     text = str(run.summary.get("log") or run.summary.get("traceback") or "")
-    return FailureCard(run.reason or "", str(run.summary.get("kind", "")), tuple(text.splitlines()[-LOG_LINES:]))
+    steps = tuple((str(step), str(why)) for step, why in run.summary.get("steps", {}).items())
+    return FailureCard(run.reason or "", str(run.summary.get("kind", "")), steps, tuple(text.splitlines()[-LOG_LINES:]))
 
 
 def _iso(time: datetime) -> str:

@@ -1,11 +1,11 @@
-"""init, ingest, preprocess, retry, status, gc, migrate: what they say and how they end."""
+"""init, settings, ingest, preprocess, retry, status, gc, migrate: what they say and how they end."""
 
 import json
 from pathlib import Path
 
 import pytest
 
-from partwise.errors import ConfigError, ConflictError, LabelError, NotFoundError
+from partwise.errors import ConfigError, ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.io.write import write_mesh
 from partwise.mesh import TriMesh
 from partwise.store.records import NewFailure
@@ -29,14 +29,17 @@ def test_init_says_what_it_made(invoke, tmp_path: Path) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     assert result.stdout == f"{tmp_path}/ws: collection 'chairs' with 3 parts: seat, back, leg\n"
     with open_workspace(tmp_path / "ws") as workspace:
-        assert workspace.catalog.get_collection("chairs").settings == {"up": "y"}
+        settings = workspace.catalog.get_collection("chairs").settings
+        assert settings == {"up": "y", "working_faces": 10_000, "remesh": "auto"}
 
 
 def test_init_adds_a_collection_to_a_workspace(invoke, empty: Path) -> None:
-    assert invoke("init", empty, "-c", "lamps", "--parts", "shade", "--up", "z").exit_code == 0
+    options = ("--up", "z", "--faces", "20000", "--remesh", "never")
+    assert invoke("init", empty, "-c", "lamps", "--parts", "shade", *options).exit_code == 0
     with open_workspace(empty) as workspace:
         assert [each.name for each in workspace.catalog.list_collections()] == ["lamps", "mugs"]
-        assert workspace.catalog.get_collection("lamps").settings == {"up": "z"}
+        settings = workspace.catalog.get_collection("lamps").settings
+        assert settings == {"up": "z", "working_faces": 20_000, "remesh": "never"}
 
 
 @pytest.mark.parametrize(
@@ -45,6 +48,42 @@ def test_init_adds_a_collection_to_a_workspace(invoke, empty: Path) -> None:
 )
 def test_init_refuses_a_wrong_collection(invoke, empty: Path, collection: str, parts: str, kind: type) -> None:
     assert isinstance(invoke("init", empty, "-c", collection, "--parts", parts).exception, kind)
+
+
+def test_init_refuses_a_resolution_out_of_range(invoke, tmp_path: Path) -> None:
+    result = invoke("init", tmp_path / "ws", "-c", "cups", "--parts", "body", "--faces", "3")
+    assert isinstance(result.exception, ParameterError)
+    assert not (tmp_path / "ws").exists()
+
+
+# settings
+
+
+def test_settings_are_shown(invoke, empty: Path) -> None:
+    words = invoke("settings", empty).stdout.split()
+    assert " ".join(words[:3]) == "Settings of mugs"
+    for name, value in (("up", "y"), ("faces", "10000"), ("remesh", "auto")):
+        assert words[words.index(name) + 2] == value
+
+
+def test_settings_are_changed_and_say_what_comes_of_it(invoke, empty: Path) -> None:
+    result = invoke("settings", empty, "--faces", "20000")
+    assert "│ faces   │ 20000 │ 10000  │" in result.stdout
+    assert "with the next `partwise preprocess`" in result.stdout
+    assert json.loads(invoke("settings", empty, "--json").stdout) == {
+        "up": "y",
+        "working_faces": 20_000,
+        "remesh": "auto",
+    }
+
+
+def test_a_change_of_pictures_alone_needs_no_new_meshes(invoke, empty: Path) -> None:
+    assert "preprocess" not in invoke("settings", empty, "--up", "z").stdout
+
+
+def test_settings_out_of_range_are_refused(invoke, empty: Path) -> None:
+    assert isinstance(invoke("settings", empty, "--faces", "3").exception, ParameterError)
+    assert invoke("settings", empty, "--remesh", "always").exit_code == 2
 
 
 def test_init_knows_three_axes(invoke, tmp_path: Path) -> None:

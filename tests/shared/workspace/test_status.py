@@ -1,12 +1,12 @@
 """Where a collection stands."""
 
-from partwise.store.records import NewFailure
+from partwise.store.records import NewFailure, ShapeState
 from partwise.workspace.status import FailedShape, StageStatus, collection_status
 
 
 def test_an_empty_collection_has_every_state_at_nought(workspace, collection) -> None:
     status = collection_status(workspace, collection, max_failures=5)
-    assert dict(status.states) == {"new": 0, "failed": 0, "ready": 0, "confirmed": 0}
+    assert dict(status.states) == dict.fromkeys(ShapeState, 0)
     assert (status.stages, status.model_version, status.failures) == ((), None, ())
 
 

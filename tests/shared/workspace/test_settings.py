@@ -1,0 +1,40 @@
+"""A collection's settings: defaults where the row is silent, ranges, changes."""
+
+from dataclasses import replace
+
+import pytest
+
+from partwise.errors import ParameterError
+from partwise.testing.expect import raises
+from partwise.workspace.settings import CollectionSettings, change_settings, settings_of
+
+
+def test_a_collection_that_says_nothing_has_the_defaults(collection) -> None:
+    assert settings_of(replace(collection, settings={})) == CollectionSettings("y", 10_000, "auto")
+
+
+def test_keys_of_other_versions_are_left_alone(workspace, collection) -> None:
+    odd = workspace.catalog.update_collection_settings(collection.id, {"upright": True, "up": "z"})
+    changed = change_settings(workspace, odd, {"working_faces": 20_000})
+    assert settings_of(changed) == CollectionSettings("z", 20_000, "auto")
+    assert changed.settings == {"upright": True, "up": "z", "working_faces": 20_000}
+
+
+def test_a_change_is_there_for_the_next_reader(workspace, collection) -> None:
+    change_settings(workspace, collection, {"remesh": "never"})
+    assert settings_of(workspace.catalog.get_collection(collection.name)).remesh == "never"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"up": "w"}, ("up must be one of x, y, z but is 'w'",)),
+        ({"remesh": "always"}, ("remesh must be one of auto, never but is 'always'",)),
+        ({"working_faces": 99}, ("working_faces must be 100 to 1,000,000 but is 99",)),
+        ({"working_faces": 1_000_001}, ("working_faces must be 100 to 1,000,000 but is 1,000,001",)),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_changed(workspace, collection, changes, words) -> None:
+    with raises(ParameterError, *words):
+        change_settings(workspace, collection, changes)
+    assert workspace.catalog.get_collection(collection.name) == collection
