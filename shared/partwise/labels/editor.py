@@ -8,7 +8,7 @@ from jaxtyping import Integer, UInt16
 
 from partwise.errors import ConflictError
 from partwise.labels.operations import Operation
-from partwise.labels.replay import Change, Replay
+from partwise.labels.replay import Change, Replay, replayed
 from partwise.labels.schema import PartSchema
 from partwise.labels.strokes import Stroke, StrokeLog
 from partwise.mesh import TriMesh
@@ -34,6 +34,24 @@ class Editor:
         self._replay = Replay(self.surface, base_labels, schema.ids)
         self._empty_log = StrokeLog.starting_from(mesh.content_hash(), self._replay.labels, base_revision)
         self._strokes: list[Stroke] = []
+
+    @classmethod
+    def resumed(
+        cls, mesh: TriMesh, base_labels: Integer[np.ndarray, " m"], schema: PartSchema, log: StrokeLog
+    ) -> "Editor":
+        """An editor as it was after the log's last stroke, undo and all; `base_labels` are those the log starts from.
+
+        Past strokes may have used parts that the schema has lost; new ones may not.
+
+        Raises
+        ------
+        LabelError : a log of another mesh or from other labels, or a stroke that cannot be done.
+        """
+        editor = cls(mesh, base_labels, schema, log.base_revision)
+        editor._replay = replayed(editor.surface, mesh, base_labels, log)
+        editor._replay.restrict_to(schema.ids)
+        editor._strokes = list(log.strokes)
+        return editor
 
     @property
     def labels(self) -> UInt16[np.ndarray, " m"]:

@@ -26,11 +26,15 @@ UNDO_LIMIT = 200
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Change:
-    """Faces (r,) int64, ascending, whose label changed, with their labels before and after, (r,) uint16."""
+    """Faces (r,) int64, ascending, whose label changed, with their labels before and after, (r,) uint16. Read-only."""
 
     faces: Int[np.ndarray, " r"]
     before: UInt16[np.ndarray, " r"]
     after: UInt16[np.ndarray, " r"]
+
+    def __post_init__(self) -> None:
+        for array in (self.faces, self.before, self.after):
+            array.flags.writeable = False  # undo holds these very arrays
 
     @property
     def is_empty(self) -> bool:
@@ -49,7 +53,7 @@ class Replay:
 
     Raises
     ------
-    LabelError : not one label per face, or labels that are no part ids.
+    LabelError : not one whole number per face, or labels that are no part ids.
     """
 
     def __init__(
@@ -63,13 +67,17 @@ class Replay:
                 f"there must be one label per face but there are {base_labels.shape} labels for {surface.n_faces} "
                 "faces; do they belong to another mesh?"
             )
+        if not np.issubdtype(base_labels.dtype, np.integer):
+            raise LabelError(f"labels must be whole numbers but are {base_labels.dtype}; give part ids")
         if base_labels.min() < NO_PART_ID or base_labels.max() > MAX_PART_ID:
             raise LabelError(
                 f"labels must be 0 to {MAX_PART_ID} but span {base_labels.min()} to {base_labels.max()}; map them first"
             )
         self._surface = surface
         self._labels = base_labels.astype(np.uint16)
-        self._part_ids = None if part_ids is None else frozenset(part_ids) | {NO_PART_ID}
+        self._part_ids: frozenset[int] | None = None
+        if part_ids is not None:
+            self.restrict_to(part_ids)
         self._done: deque[Change] = deque(maxlen=UNDO_LIMIT)
         self._undone: list[Change] = []
 
@@ -87,6 +95,10 @@ class Replay:
     @property
     def can_redo(self) -> bool:
         return bool(self._undone)
+
+    def restrict_to(self, part_ids: Collection[int]) -> None:
+        """From now on, edits may only give these parts, and 0. Undo and redo still bring back what was there."""
+        self._part_ids = frozenset(part_ids) | {NO_PART_ID}
 
     def apply(self, operation: Operation) -> Change:
         """Does one operation and says what changed. Undo and redo cost what they change.
@@ -161,7 +173,12 @@ class Replay:
 
 
 def replay(mesh: TriMesh, base_labels: Integer[np.ndarray, " m"], log: StrokeLog) -> UInt16[np.ndarray, " m"]:
-    """The labels (m,) uint16 after all strokes of the log: the same on every machine.
+    """The labels (m,) uint16 after all strokes of the log: the same on every machine. Raises as `replayed` does."""
+    return replayed(PaintSurface.build(mesh), mesh, base_labels, log).labels.copy()
+
+
+def replayed(surface: PaintSurface, mesh: TriMesh, base_labels: Integer[np.ndarray, " m"], log: StrokeLog) -> Replay:
+    """The state after all strokes of the log, ready for more; `surface` is the mesh's.
 
     Raises
     ------
@@ -172,7 +189,7 @@ def replay(mesh: TriMesh, base_labels: Integer[np.ndarray, " m"], log: StrokeLog
             f"a stroke log must be replayed on its own mesh, {log.mesh_hash[:12]}… with {log.n_faces} faces, but this "
             f"is {mesh.content_hash()[:12]}… with {mesh.n_faces}; move the labels by map-back instead"
         )
-    state = Replay(PaintSurface.build(mesh), base_labels)
+    state = Replay(surface, base_labels)
     if labels_sha256(state.labels) != log.base_sha256:
         raise LabelError(
             f"a stroke log must start from labels with checksum {log.base_sha256[:12]}… but these have "
@@ -183,4 +200,4 @@ def replay(mesh: TriMesh, base_labels: Integer[np.ndarray, " m"], log: StrokeLog
             state.apply(stroke.operation)
         except PartwiseError as error:
             raise LabelError(f"stroke {stroke.sequence} of the log cannot be replayed: {error}") from error
-    return state.labels.copy()
+    return state

@@ -119,16 +119,16 @@ def _operation_document(operation: Operation) -> dict[str, Any]:
         case Paint(seeds, brush, label, only_over):
             return {
                 "kind": "paint",
-                "seeds": list(seeds),
-                "radius": brush.radius,
-                "min_cosine": brush.min_cosine,
-                "label": label,
-                "only_over": only_over,
+                "seeds": [int(seed) for seed in seeds],  # they may be numpy's
+                "radius": float(brush.radius),
+                "min_cosine": None if brush.min_cosine is None else float(brush.min_cosine),
+                "label": int(label),
+                "only_over": None if only_over is None else int(only_over),
             }
         case Assign(runs, label):
-            return {"kind": "assign", "runs": [list(run) for run in runs], "label": label}
+            return {"kind": "assign", "runs": [[int(first), int(count)] for first, count in runs], "label": int(label)}
         case SegmentWide(seed, label):
-            return {"kind": "segment_wide", "seed": seed, "label": label}
+            return {"kind": "segment_wide", "seed": int(seed), "label": int(label)}
         case Delta(source, delta, parameters):
             return {
                 "kind": "delta",

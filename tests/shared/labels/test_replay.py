@@ -81,6 +81,21 @@ def test_every_prefix_replays(mesh: TriMesh, data: st.DataObject, operations: Op
         np.testing.assert_array_equal(replay(mesh, seen[0], editor.log().prefix(n_strokes)), labels)
 
 
+@settings(max_examples=30, deadline=None)
+@given(mesh=meshes(), data=st.data())
+def test_an_editor_resumes_where_it_was(
+    mesh: TriMesh, data: st.DataObject, operations: Operations, perform: Perform
+) -> None:
+    editor, seen = _edited(mesh, data, operations, perform)
+    resumed = Editor.resumed(mesh, seen[0], _SCHEMA, editor.log())
+    assert resumed.log() == editor.log()
+    assert (resumed.can_undo, resumed.can_redo) == (editor.can_undo, editor.can_redo)
+    while editor.can_undo:
+        perform(editor, Undo())
+        perform(resumed, Undo())
+        np.testing.assert_array_equal(resumed.labels, editor.labels)
+
+
 @settings(max_examples=40, deadline=None)
 @given(mesh=meshes(), data=st.data())
 def test_undo_takes_back_and_redo_does_again(mesh: TriMesh, data: st.DataObject, operations: Operations) -> None:
@@ -221,6 +236,27 @@ def test_base_labels_stay_as_they_are() -> None:
 def test_base_labels_of_another_mesh_are_refused() -> None:
     with pytest.raises(LabelError, match="labels for 6 faces"):
         _strip(np.zeros(5, np.uint16))
+
+
+def test_base_labels_that_are_no_whole_numbers_are_refused() -> None:
+    with pytest.raises(LabelError, match="must be whole numbers but are float64"):
+        _strip(np.zeros(6))
+
+
+def test_undo_cannot_be_spoilt_through_a_change() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        _strip().apply(_EDIT).before[0] = 9
+
+
+def test_undo_brings_back_a_part_that_may_no_longer_be_given() -> None:
+    state = _strip()
+    state.apply(SegmentWide(0, 3))
+    state.restrict_to([1])
+    for operation in (SegmentWide(0, 1), Undo()):
+        state.apply(operation)
+    assert state.labels.tolist() == [3] * 6
+    with pytest.raises(LabelError, match="its parts are 1 "):
+        state.apply(Assign(((0, 1),), 3))
 
 
 @pytest.mark.parametrize("label", [-1, 65_536])

@@ -117,6 +117,19 @@ def test_a_stroke_is_one_flat_object(make_stroke: MakeStroke) -> None:
     }
 
 
+@pytest.mark.parametrize(
+    "operation",
+    [
+        Paint(tuple(np.array([2, 0])), Brush(np.float64(0.1), np.float64(0.5)), np.int64(3), np.uint16(1)),  # type: ignore[arg-type]
+        Assign(((np.int64(0), np.int64(2)),), np.uint16(3)),  # type: ignore[arg-type]
+        SegmentWide(np.int64(0), np.uint16(1)),  # type: ignore[arg-type]
+    ],
+)
+def test_numbers_of_numpy_are_numbers(operation: Operation, make_stroke: MakeStroke) -> None:
+    document = json.loads(json.dumps(stroke_to_document(make_stroke(0, operation))))
+    assert stroke_from_document(document).operation == operation
+
+
 def test_a_time_elsewhere_is_the_same_moment(make_stroke: MakeStroke) -> None:
     document = stroke_to_document(make_stroke(0, Clear()))
     assert stroke_from_document({**document, "at": "2026-03-01T11:30:00+02:00"}) == stroke_from_document(document)
