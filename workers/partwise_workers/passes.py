@@ -12,6 +12,7 @@ from partwise_workers.cluster import connected
 from partwise_workers.model_store import ModelReference
 from partwise_workers.plan import description_stages, plan_tasks
 from partwise_workers.publishing import AlsoPublish, Published, nothing_else
+from partwise_workers.relabelling import move_labels
 from partwise_workers.runner import StageRunner
 from partwise_workers.stage import Stage
 from partwise_workers.stages import evaluate as evaluate_stage
@@ -34,7 +35,9 @@ def preprocess(workspace: Workspace, collection: Collection, on_progress: OnRunP
     StoreError : a store is full or cannot be reached; what is finished is kept for the next run. So do all passes.
     WorkerError : Ray or its processes cannot be started. So do all passes.
     """
-    return _run(workspace, collection, description_stages(workspace, collection), (), on_progress, _meshes)
+    result = _run(workspace, collection, description_stages(workspace, collection), (), on_progress, _meshes)
+    move_labels(workspace, collection, on_progress)
+    return result
 
 
 def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:

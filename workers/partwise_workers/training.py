@@ -175,11 +175,12 @@ def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[Tr
     """Every shape whose newest human or imported labels can be learned from, by id.
 
     They must belong to the mesh that is described, and to the present schema version (older ones wait for someone to
-    look at them). The description must be as the configuration says, so that no model mixes two kinds.
+    look at them); no review of them may be open. The description must be as the configuration says, so that no model
+    mixes two kinds.
     """
     catalog, after = workspace.catalog, 0
     stages = description_stages(workspace, collection)
-    while page := catalog.labelled_shapes(collection.id, after=after):
+    while page := catalog.labelled_shapes(collection.id, after=after, leave_out_reviews=True):
         ids = [revision.shape_id for revision in page]
         shapes = catalog.shapes_by_id(ids)
         runs = [catalog.stage_runs(ids, stage.name) for stage in stages[1:]]  # the original's mesh is another

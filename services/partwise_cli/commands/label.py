@@ -1,5 +1,6 @@
 """Commands about labels: import, confirm, export."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +10,7 @@ from partwise.store.records import RevisionKind
 from partwise.workspace.choices import ExportFormat, Segmentation
 from partwise_cli.arguments import CollectionOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
-from partwise_cli.terminal import counted, warning_lines
+from partwise_cli.terminal import counted, shape_progress, warning_lines
 
 AuthorOption = Annotated[str, typer.Option(help="Whose work the labels are.")]
 
@@ -24,7 +25,14 @@ def register(app: typer.Typer) -> None:
 
 def import_(
     ws: WorkspaceArgument,
-    folder: Annotated[Path, typer.Argument(help="Folder of <shape>_labels.txt or <shape>.seg.", show_default=False)],
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder of <shape>_labels.txt or <shape>.seg: of the files' own faces, moved to the working meshes. "
+            "Of the working meshes' faces where their number differs and fits.",
+            show_default=False,
+        ),
+    ],
     collection: CollectionOption = None,
     kind: Annotated[
         RevisionKind, typer.Option("--as", help="reference labels are ground truth: never trained on, never shown.")
@@ -35,16 +43,23 @@ def import_(
     from partwise.workspace.labelling import import_labels
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
+    from partwise_workers.relabelling import move_labels
 
-    with open_workspace(ws) as workspace:
-        report = import_labels(workspace, find_collection(workspace, collection), folder, kind, author)
+    with open_workspace(ws) as workspace, shape_progress("move labels") as on_progress:
+        found = find_collection(workspace, collection)
+        report = import_labels(workspace, found, folder, kind, author, partial(move_labels, on_progress=on_progress))
     warning_lines([refused.reason for refused in report.refused])
     typer.echo(
         f"labels of {counted(report.n_imported, 'shape')} put on record as {kind.value}, "
         f"{report.n_unchanged:,} unchanged, {counted(len(report.refused), 'file')} refused, "
         f"{counted(report.n_unlabelled, 'shape')} without a file"
     )
-    if report.refused:
+    if report.moves.n_moved or report.moves.n_failed:
+        typer.echo(
+            f"labels of {counted(report.moves.n_moved, 'shape')} moved to the working mesh: "
+            f"{report.moves.n_in_review:,} to be reviewed, {report.moves.n_failed:,} failed"
+        )
+    if report.refused or report.moves.n_failed:
         raise typer.Exit(SOME_FAILED)
 
 

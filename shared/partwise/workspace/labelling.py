@@ -1,5 +1,6 @@
 """Commits label revisions, imported or confirmed, and keeps the bytes of the meshes they belong to for good."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -7,6 +8,7 @@ import numpy as np
 from jaxtyping import UInt16
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, PartwiseError, StoreError
+from partwise.exchange.label_files import read_label_bytes
 from partwise.exchange.labels_psb import read_psb_labels
 from partwise.exchange.named_labels import to_part_ids
 from partwise.exchange.seg import read_seg
@@ -15,6 +17,7 @@ from partwise.store import meshes
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, LabelRevision, Mesh, NewRevision, RevisionKind, Shape
 from partwise.unlabelled import NO_CLASS, NO_PART_ID
+from partwise.workspace.relabel import MoveReport, move_here, origin_on
 from partwise.workspace.shapes import all_shapes, shape_mesh
 from partwise.workspace.workspace import Workspace
 
@@ -32,21 +35,32 @@ class RefusedLabels:
 
 @dataclass(frozen=True, slots=True)
 class ImportReport:
-    """What became of a folder's label files. `n_unchanged` were on record already; `n_unlabelled` shapes had none."""
+    """What became of a folder's label files. `n_unchanged` were on record already; `n_unlabelled` shapes had none.
+
+    moves : of labels that belong to the shapes' own files, to their working meshes.
+    """
 
     n_imported: int
     n_unchanged: int
     n_unlabelled: int
     refused: tuple[RefusedLabels, ...]
+    moves: MoveReport
 
 
 def import_labels(
-    workspace: Workspace, collection: Collection, folder: Path, kind: RevisionKind, author: str
+    workspace: Workspace,
+    collection: Collection,
+    folder: Path,
+    kind: RevisionKind,
+    author: str,
+    mover: Callable[[Workspace, Collection], MoveReport] = move_here,
 ) -> ImportReport:
     """For each shape `a/b.off` reads `a/b_labels.txt` or `a/b.seg` below the folder. A wrong file costs only itself.
 
-    A `.seg` file holds part ids of the collection's schema, 0 or −1 for unlabelled. Shapes whose newest labels of this
-    kind are the same are left as they are; labels that a person confirmed are never hidden behind imported ones.
+    A `.seg` file holds part ids of the collection's schema, 0 or −1 for unlabelled. Labels are of the faces of the
+    shape's own file or of its working mesh, whichever has so many; of the file where both have. Those of the file are
+    moved to the working mesh by `mover` once all are on record. Shapes whose newest labels of this kind are the same
+    are left as they are; labels that a person confirmed are never hidden behind imported ones.
 
     Raises
     ------
@@ -75,7 +89,7 @@ def import_labels(
             f"{folder} must hold <shape>{PSB_ENDING} or <shape>{SEG_ENDING} files but has none for the "
             f"{n_unlabelled} shapes of {collection.name!r}; are names and subfolders those of the meshes?"
         )
-    return ImportReport(n_imported, n_unchanged, n_unlabelled, tuple(refused))
+    return ImportReport(n_imported, n_unchanged, n_unlabelled, tuple(refused), mover(workspace, collection))
 
 
 def read_labels(path: Path, n_faces: int, schema: PartSchema) -> UInt16[np.ndarray, " m"]:
@@ -105,15 +119,22 @@ def commit_labels(
     labels: UInt16[np.ndarray, " m"],
     kind: RevisionKind,
     author: str,
+    mesh: Mesh | None = None,
 ) -> LabelRevision:
     """Keeps the mesh's bytes, then commits an immutable revision on it; what is on record already is returned instead.
+
+    A person who confirms labels that were merely moved to this mesh makes them their own: that is a new revision.
+
+    Parameters
+    ----------
+    mesh : one of the shape's; the working mesh unless another is given.
 
     Raises
     ------
     LabelError : one label per face is missing, or a label is not in the schema.
     ConflictError : the shape has no mesh yet.
     """
-    mesh = shape_mesh(workspace, shape)
+    mesh = shape_mesh(workspace, shape) if mesh is None else mesh
     same = _same_labels(workspace, shape, mesh, labels, kind)
     if same is not None:
         return same
@@ -156,7 +177,7 @@ def _import(
     author: str,
 ) -> bool:
     """Commits one file's labels; whether they are new."""
-    mesh = shape_mesh(workspace, shape)
+    mesh = _mesh_of_file(workspace, shape, path)
     labels = read_labels(path, mesh.n_faces, schema)
     if _same_labels(workspace, shape, mesh, labels, kind) is not None:
         return False
@@ -166,18 +187,55 @@ def _import(
             f"imported labels must not hide a person's but {shape.source_key} has labels that a person confirmed; "
             "take the file away, or put it on record with `partwise confirm`"
         )
-    commit_labels(workspace, collection, shape, labels, kind, author)
+    commit_labels(workspace, collection, shape, labels, kind, author, mesh)
     return True
+
+
+def _mesh_of_file(workspace: Workspace, shape: Shape, path: Path) -> Mesh:
+    """Which of the shape's meshes a label file belongs to, by its number of faces: the original, or the working mesh.
+
+    A `_labels.txt` file may leave faces out: the last face it names must tell the two apart.
+    """
+    original = workspace.catalog.original_meshes([shape.id]).get(shape.id)
+    working = workspace.catalog.meshes([shape.id]).get(shape.id)
+    if original is None or working is None or original.n_faces == working.n_faces:
+        return original or shape_mesh(workspace, shape)
+    n_faces = _n_labels(path, max(original.n_faces, working.n_faces))
+    for mesh in (original, working):
+        if n_faces == mesh.n_faces:
+            return mesh
+    is_partial = path.name.endswith(PSB_ENDING)
+    fitting = [mesh for mesh in (original, working) if is_partial and n_faces <= mesh.n_faces]
+    if len(fitting) == 1:
+        return fitting[0]
+    raise LabelError(
+        f"{path}: labels must be of the file's {original.n_faces:,} faces or of the working mesh's {working.n_faces:,} "
+        f"but {'the last face named is' if is_partial else 'there are'} {n_faces:,}; are they another shape's?"
+    )
+
+
+def _n_labels(path: Path, max_faces: int) -> int:
+    """Faces that a label file is for: its labels, or the last face that it names."""
+    if not path.name.endswith(PSB_ENDING):
+        return len(read_label_bytes(path, None).split())
+    named = np.flatnonzero(read_psb_labels(path, max_faces).indices != NO_CLASS)
+    return int(named[-1]) + 1 if len(named) else 0
 
 
 def _same_labels(
     workspace: Workspace, shape: Shape, mesh: Mesh, labels: UInt16[np.ndarray, " m"], kind: RevisionKind
 ) -> LabelRevision | None:
-    """The newest revision of this kind if it says the same about the same mesh; a person's only if it is shown."""
+    """The newest revision of this kind if it, or what it was moved from, says the same about the same mesh.
+
+    A person's counts only if it is shown, and as that person made it.
+    """
     head = workspace.catalog.head_revision(shape.id, SHOWN_KINDS if kind is RevisionKind.HUMAN else (kind,))
-    if head is None or head.kind is not kind or head.mesh_hash != mesh.mesh_hash:
+    if head is None or head.kind is not kind:
         return None
-    return head if np.array_equal(workspace.catalog.labels(head.id), labels) else None
+    found = origin_on(workspace.catalog, head, mesh.mesh_hash)
+    if found is None or (kind is RevisionKind.HUMAN and found.origin is not None):
+        return None
+    return found if np.array_equal(workspace.catalog.labels(found.id), labels) else None
 
 
 def _label_file(folder: Path, source_key: str) -> Path | None:

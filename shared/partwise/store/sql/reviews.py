@@ -42,7 +42,7 @@ def lock_labels(connection: Connection, shape_id: int) -> None:
     connection.execute(select(t.shape.c.id).where(t.shape.c.id == shape_id).with_for_update(key_share=True))
 
 
-def _refuse_unfit(connection: Connection, revision_id: int) -> Row[Any]:
+def _refuse_unfit(connection: Connection, revision_id: int) -> Row[Any, Any, Any]:
     """The shape and collection of a revision that may be reviewed: the newest that is shown."""
     columns = (t.label_revision.c.shape_id, t.label_revision.c.kind, t.shape.c.collection_id)
     of_revision = (

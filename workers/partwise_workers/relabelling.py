@@ -1,0 +1,124 @@
+"""Moves labels of shapes that have another mesh now: Ray tasks find whose label each face takes, the driver commits.
+
+A run that was killed leaves nothing half-done: the next one finds the moves that are still missing.
+"""
+
+from typing import Any
+
+import numpy as np
+import ray
+from jaxtyping import UInt16
+from ray.exceptions import RayError
+
+from partwise.errors import PartwiseError
+from partwise.remesh.moved_labels import MovedLabels
+from partwise.store.open import open_array_store
+from partwise.store.records import Collection, Mesh
+from partwise.workspace.progress import OnRunProgress, RunProgress
+from partwise.workspace.relabel import (
+    MoveReport,
+    PendingMove,
+    commit_move,
+    compute_move,
+    move_here,
+    pending_moves,
+    record_failed_move,
+    waits_for_review,
+)
+from partwise.workspace.workspace import Workspace
+from partwise_workers.cluster import connected, n_cores, thread_environment
+from partwise_workers.pool import first_line, raise_own
+
+FEW = 8
+"""So many moves are made in this process: starting Ray would take longer."""
+
+IN_FLIGHT_PER_CORE = 2
+MAX_RETRIES = 1
+"""Of a move whose process died."""
+
+
+def move_labels(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> MoveReport:
+    """Moves the newest labels of every shape to its present working mesh; where all are there, nothing happens.
+
+    A shape whose labels cannot be moved is named among the failures and tried again next time.
+
+    Raises
+    ------
+    StoreError : a store is full or cannot be reached; what is committed stays.
+    WorkerError : Ray cannot be started.
+    """
+    n_total = sum(1 for _ in pending_moves(workspace, collection))
+    if n_total <= FEW:
+        return move_here(workspace, collection, on_progress)
+    with connected():
+        return _Mover(workspace, on_progress, n_total).run(collection)
+
+
+class _Mover:
+    """Keeps a bounded number of tasks in flight and commits what they return."""
+
+    def __init__(self, workspace: Workspace, on_progress: OnRunProgress, n_total: int) -> None:
+        self._workspace = workspace
+        self._on_progress = on_progress
+        self._n_total = n_total
+        self._in_flight: dict[ray.ObjectRef[MovedLabels], PendingMove] = {}
+        self._n_moved = self._n_in_review = self._n_failed = 0
+
+    def run(self, collection: Collection) -> MoveReport:
+        n_slots = IN_FLIGHT_PER_CORE * n_cores()
+        try:
+            for move in pending_moves(self._workspace, collection):
+                self._submit(move)
+                while len(self._in_flight) >= n_slots:
+                    self._finish_one()
+            while self._in_flight:
+                self._finish_one()
+        finally:
+            for pending in self._in_flight:
+                ray.cancel(pending, force=True)
+        return MoveReport(self._n_moved, self._n_in_review, self._n_failed)
+
+    def _submit(self, move: PendingMove) -> None:
+        try:
+            labels = self._workspace.catalog.labels(move.source.id)
+        except PartwiseError as error:
+            self._fail(move, error)
+            return
+        task: Any = _compute
+        self._in_flight[task.remote(self._workspace.array_url, move.old_mesh, move.new_mesh, labels)] = move
+
+    def _finish_one(self) -> None:
+        (done,), _ = ray.wait(list(self._in_flight), num_returns=1)
+        move = self._in_flight.pop(done)
+        try:
+            moved = _result(done)
+        except (PartwiseError, RayError) as error:
+            self._fail(move, error)
+            return
+        committed = commit_move(self._workspace, move, moved)
+        if committed is not None:
+            self._n_moved += 1
+            self._n_in_review += waits_for_review(committed)
+        self._tell()
+
+    def _fail(self, move: PendingMove, error: Exception) -> None:
+        record_failed_move(self._workspace, move, first_line(error))
+        self._n_failed += 1
+        self._tell()
+
+    def _tell(self) -> None:
+        self._on_progress(RunProgress(self._n_moved, self._n_failed, self._n_total))
+
+
+def _result(done: "ray.ObjectRef[MovedLabels]") -> MovedLabels:
+    try:
+        result: MovedLabels = ray.get(done)
+    except RayError as error:
+        raise_own(error)
+        raise
+    return result
+
+
+@ray.remote(num_cpus=1, max_retries=MAX_RETRIES, runtime_env={"env_vars": thread_environment(1)})
+def _compute(array_url: str, old_mesh: Mesh, new_mesh: Mesh, labels: UInt16[np.ndarray, " n"]) -> MovedLabels:
+    return compute_move(open_array_store(array_url), old_mesh, new_mesh, labels)
