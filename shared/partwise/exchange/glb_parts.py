@@ -39,7 +39,7 @@ def write_glb_parts(path: Path | str, described: DescribedMesh, unlabelled: Rgb 
     StoreError : the file cannot be written.
     """
     largest = float(np.abs(described.mesh.vertices).max())
-    if largest > np.finfo(np.float32).max:
+    if largest > float(np.finfo(np.float32).max):
         raise ParameterError(f"{path}: coordinates must fit float32 but reach {largest:.3g}; export as NPZ")
     scene = GlbScene(described, unlabelled)
     write_atomically(path, pack_glb(scene.document, scene.binary))

@@ -16,6 +16,7 @@ numpy's own writer depends on the platform (numpy issue 9439).
 
 import io
 import json
+import struct
 import zipfile
 import zlib
 from pathlib import Path
@@ -39,7 +40,9 @@ from partwise.mesh import TriMesh
 
 FORMAT, FORMAT_VERSION = "partwise.labels", 1
 _ARRAYS = ("vertices", "faces", "labels", "part_ids", "part_names", "description")
+_DEFAULT_LIMITS = ReadLimits()
 _UNIX = 3
+_ENCRYPTED = 0x1
 _MAX_EXPANSION = 1_000  # deflate cannot do more than 1,032
 _MAX_LABEL = np.iinfo(np.int32).max
 
@@ -73,17 +76,17 @@ def write_npz(path: Path | str, described: DescribedMesh) -> None:
     write_atomically(path, _zipped(arrays))
 
 
-def read_npz(path: Path | str, data: bytes | None = None) -> DescribedMesh:
+def read_npz(path: Path | str, data: bytes | None = None, limits: ReadLimits = _DEFAULT_LIMITS) -> DescribedMesh:
     """What `write_npz` wrote.
 
     Raises
     ------
-    FileFormatError : not such a file, truncated, pickled, or of absurd size.
+    FileFormatError : not such a file, truncated, pickled, or over a limit, packed or unpacked.
     LabelError : labels do not fit the mesh or the schema, or the mesh is not the one they were made on.
     """
     data = read_label_bytes(path, data)
     try:
-        arrays = _unzipped(data)
+        arrays = _unzipped(data, limits)
         description = load_json(str(arrays["description"]), "the description")
         if not isinstance(description, dict) or description.get("format") != FORMAT:
             raise FileFormatError(f"the description must be of format {FORMAT} but is not; export the file again")
@@ -120,28 +123,40 @@ def _zipped(arrays: dict[str, np.ndarray]) -> bytes:
     return buffer.getvalue()
 
 
-def _unzipped(data: bytes) -> dict[str, np.ndarray]:
+def _unzipped(data: bytes, limits: ReadLimits) -> dict[str, np.ndarray]:
     """The expected arrays, of kinds that they may be; others in the file are left alone."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            members = {member.filename: member for member in archive.infolist()}
-            missing = [name for name in _ARRAYS if f"{name}.npy" not in members]
-            if missing:
-                raise FileFormatError(
-                    f"an NPZ of labels must hold {', '.join(_ARRAYS)} but lacks {', '.join(missing)}; "
-                    "write it with `partwise export --format npz`"
-                )
-            wanted = [members[f"{name}.npy"] for name in _ARRAYS]
-            _check_expansion(sum(member.file_size for member in wanted), len(data))
-            arrays = {name: _array(archive.read(member), name) for name, member in zip(_ARRAYS, wanted, strict=True)}
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError) as error:
-        raise FileFormatError(f"an NPZ must be a zip archive but {error}; is the file truncated?") from error
-    _check_kinds(arrays)
+        contents = _members(data, limits)
+    except FileFormatError:
+        raise
+    except (zipfile.BadZipFile, zlib.error, struct.error, EOFError, OSError, RuntimeError, ValueError) as error:
+        reason = " ".join(str(error).split())[:100]
+        raise FileFormatError(f"an NPZ must be a zip archive but {reason}; is the file truncated?") from error
+    arrays = {name: _array(content, name) for name, content in contents.items()}
+    _check_kinds(arrays, limits)
     return arrays
 
 
-def _check_expansion(n_unpacked: int, n_packed: int) -> None:
-    ReadLimits().check_bytes(n_unpacked)
+def _members(data: bytes, limits: ReadLimits) -> dict[str, bytes]:
+    """The bytes of each expected array's file."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = {member.filename: member for member in archive.infolist()}
+        missing = [name for name in _ARRAYS if f"{name}.npy" not in members]
+        if missing:
+            raise FileFormatError(
+                f"an NPZ of labels must hold {', '.join(_ARRAYS)} but lacks {', '.join(missing)}; "
+                "write it with `partwise export --format npz`"
+            )
+        wanted = {name: members[f"{name}.npy"] for name in _ARRAYS}
+        for member in wanted.values():
+            if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) or member.flag_bits & _ENCRYPTED:
+                raise FileFormatError(f"{member.filename} must be plain or deflated but is not; save it with numpy")
+        _check_expansion(sum(member.file_size for member in wanted.values()), len(data), limits)
+        return {name: archive.read(member) for name, member in wanted.items()}
+
+
+def _check_expansion(n_unpacked: int, n_packed: int, limits: ReadLimits) -> None:
+    limits.check_bytes(n_unpacked)
     if n_unpacked > _MAX_EXPANSION * n_packed:
         raise FileFormatError(
             f"an NPZ may unpack to {_MAX_EXPANSION} times its size but this makes {n_unpacked} bytes of {n_packed}; "
@@ -173,7 +188,7 @@ def _array(content: bytes, name: str) -> np.ndarray:
     return np.frombuffer(content, dtype=dtype, offset=stream.tell()).reshape(shape, order="F" if fortran else "C")
 
 
-def _check_kinds(arrays: dict[str, np.ndarray]) -> None:
+def _check_kinds(arrays: dict[str, np.ndarray], limits: ReadLimits) -> None:
     for name, kinds, n_dimensions in (
         ("vertices", "f", 2),
         ("faces", "iu", 2),
@@ -186,5 +201,5 @@ def _check_kinds(arrays: dict[str, np.ndarray]) -> None:
                 f"array {name} must have {n_dimensions} dimensions of kind {kinds} but is {values.shape} "
                 f"{values.dtype}; export the file again"
             )
-    ReadLimits().check_faces(len(arrays["faces"]))
-    ReadLimits().check_vertices(len(arrays["vertices"]))
+    limits.check_faces(len(arrays["faces"]))
+    limits.check_vertices(len(arrays["vertices"]))

@@ -20,6 +20,15 @@ def check_sha256(value: str, what: str) -> None:
         raise ParameterError(f"{what} must be SHA-256 in lower-case hex but is {value!r}; compute it from the bytes")
 
 
+def check_mesh_hash(mesh_hash: str, promised: str) -> None:
+    """Raises LabelError where a mesh is not the one that labels were made on."""
+    if mesh_hash != promised:
+        raise LabelError(
+            f"labels must be those of the mesh but are of mesh {promised[:12]}… and this is {mesh_hash[:12]}…; "
+            "export again from the mesh they belong to"
+        )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class LabelledMesh:
     """A mesh and the label of each of its faces, (m,) int64; −1 = unlabelled.
@@ -37,6 +46,11 @@ class LabelledMesh:
             raise LabelError(
                 f"{self.mesh.n_faces} faces must have a label each but labels are {self.labels.shape}; another mesh's?"
             )
+
+    def labels_on(self, mesh: TriMesh) -> Int[np.ndarray, " m"]:
+        """The labels, for the mesh they belong to; LabelError if `mesh` is another."""
+        check_mesh_hash(mesh.content_hash(), self.mesh.content_hash())
+        return self.labels
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,12 +105,3 @@ class DescribedMesh:
     @property
     def labels(self) -> Int[np.ndarray, " m"]:
         return self.labelled.labels
-
-
-def check_mesh_hash(mesh_hash: str, promised: str) -> None:
-    """Raises LabelError where a mesh is not the one that labels were made on."""
-    if mesh_hash != promised:
-        raise LabelError(
-            f"labels must be those of the mesh but are of mesh {promised[:12]}… and this is {mesh_hash[:12]}…; "
-            "export again from the mesh they belong to"
-        )

@@ -41,10 +41,10 @@ class ShapeNetIndex:
     splits: Mapping[str, tuple[tuple[str, str], ...]]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "categories", MappingProxyType(dict(self.categories)))
-        object.__setattr__(self, "splits", MappingProxyType({name: self.splits.get(name, ()) for name in SPLITS}))
         if strangers := set(self.splits) - set(SPLITS):
             raise ParameterError(f"splits are {SPLITS} but one is {sorted(strangers)[0]!r}; rename it")
+        object.__setattr__(self, "categories", MappingProxyType(dict(self.categories)))
+        object.__setattr__(self, "splits", MappingProxyType({name: self.splits.get(name, ()) for name in SPLITS}))
         shapes = [shape for name in SPLITS for shape in self.splits[name]]
         names = [*self.categories.keys(), *self.categories.values(), *(part for shape in shapes for part in shape)]
         for name in names:

@@ -9,19 +9,20 @@ from partwise.errors import FileFormatError, ParameterError
 from partwise.exchange.export_manifest import (
     ExportManifest,
     ManifestFile,
-    ManifestPart,
     ManifestShape,
     damaged_files,
     file_sha256,
     read_manifest,
     write_manifest,
 )
+from partwise.exchange.parts import PartEntry
 
 HASH = "0123456789abcdef" * 4
 FILE = ManifestFile("chairs/1.seg", HASH)
-SHAPE = ManifestShape("1.off", HASH, HASH, 10, {0: 6, 2: 3, -1: 1}, (FILE,), 17)
-PARTS = (ManifestPart(0, "seat", "#ff0000"), ManifestPart(2, "leg", "#00ff00"))
-MANIFEST = ExportManifest("0.1.0", "chairs", 3, PARTS, "refined", (SHAPE,))
+WHOLE = ManifestFile("coco.json", HASH)
+SHAPE = ManifestShape("1.off", HASH, HASH, 10, {0: 6, 2: 3, -1: 1}, (FILE,), 17, "refined")
+PARTS = (PartEntry(0, "seat", "#ff0000"), PartEntry(2, "leg", "#00ff00", "what it stands on", 0))
+MANIFEST = ExportManifest("0.1.0", "chairs", 3, PARTS, "refined", (SHAPE,), (WHOLE,), {"format": "coco", "seed": 7})
 
 
 def test_round_trip(tmp_path):
@@ -33,6 +34,19 @@ def test_confirmed_labels_name_no_model():
     shape = dataclasses.replace(SHAPE, model_version=None)
     manifest = dataclasses.replace(MANIFEST, segmentation="confirmed", shapes=(shape,))
     assert read_manifest("m.json", manifest.to_json().encode()) == manifest
+
+
+def test_the_first_version_is_still_read():
+    """It had neither kinds, glosses and parents nor files of the collection and parameters."""
+    document = json.loads(MANIFEST.to_json())
+    document["format_version"] = 1
+    for absent in ("files", "parameters"):
+        del document[absent]
+    del document["shapes"][0]["kind"]
+    document["parts"] = [{"id": 0, "name": "seat", "colour": "#ff0000"}, {"id": 2, "name": "leg", "colour": "#00ff00"}]
+    found = read_manifest("m.json", json.dumps(document).encode())
+    assert (found.files, found.parameters, found.shapes[0].kind) == ((), {}, "")
+    assert found.parts[1] == PartEntry(2, "leg", "#00ff00")
 
 
 def test_json_names_its_format():
@@ -54,6 +68,8 @@ def test_json_names_its_format():
         (SHAPE, {"source_hash": ""}, "source_hash"),
         (SHAPE, {"n_faces": 11}, "sum to 11"),
         (SHAPE, {"faces_per_part": {0: 11, 2: -1}}, "sum to 10"),
+        (SHAPE, {"kind": "guessed"}, "kind of 1.off"),
+        (MANIFEST, {"parts": (PARTS[1],)}, "parent of 'leg'"),
         (MANIFEST, {"segmentation": "guessed"}, "segmentation"),
         (MANIFEST, {"shapes": (dataclasses.replace(SHAPE, model_version=None),)}, "must name their model"),
         (MANIFEST, {"segmentation": "confirmed"}, "must name their model"),
@@ -92,4 +108,4 @@ def test_damage_is_found(tmp_path):
     (tmp_path / "changed").write_text("otherwise")
     (tmp_path / "lost").unlink()
     manifest = dataclasses.replace(MANIFEST, shapes=(dataclasses.replace(SHAPE, files=files),))
-    assert damaged_files(manifest, tmp_path) == ("changed", "lost")
+    assert damaged_files(manifest, tmp_path) == ("coco.json", "changed", "lost")
