@@ -1,7 +1,5 @@
 """What `partwise status --shape` shows: a shape's provenance card, for people to read."""
 
-from collections.abc import Mapping
-
 import typer
 
 from partwise.geometry.manifold import ManifoldReport
@@ -58,8 +56,8 @@ def _working(working: WorkingCard | None) -> str:
         return "the original as it is" + (", as the collection is set" if working.policy == "never" else "")
     mesh = working.mesh
     source = "the whole surface" if working.level is None else f"level {working.level:,}"
-    size = f"{mesh.n_faces:,} faces, {mesh.n_vertices:,} vertices"
-    return f"{_short(mesh.mesh_hash)}, {size}; {source} where {working.working_faces:,} faces were wanted"
+    wanted = "" if working.level == working.working_faces else f", where {working.working_faces:,} faces were wanted"
+    return f"{_short(mesh.mesh_hash)}, {mesh.n_faces:,} faces, {mesh.n_vertices:,} vertices; {source}{wanted}"
 
 
 def _in_words(report: ManifoldReport) -> str:
@@ -81,10 +79,9 @@ def _in_words(report: ManifoldReport) -> str:
 
 
 def _attempt(number: int, attempt: AttemptCard) -> tuple[str, ...]:
-    how = _parameters(attempt.parameters)
     return (
         str(number),
-        f"{attempt.method}, {how}" if how else attempt.method,
+        ", ".join([attempt.method, *_parameters(attempt)]),
         f"{attempt.core_s:.1f}",
         _NOTHING if attempt.n_faces is None else f"{attempt.n_faces:,}",
         f"{attempt.dropped_area:.1%}",
@@ -93,13 +90,14 @@ def _attempt(number: int, attempt: AttemptCard) -> tuple[str, ...]:
     )
 
 
-def _parameters(parameters: Mapping[str, float]) -> str:
-    """`alpha 0.3 %, offset 0.1 %`: a name's last word is its unit."""
+def _parameters(attempt: AttemptCard) -> list[str]:
+    """`0.3 %`, `offset 0.1 %`: a parameter's last word is its unit; what the method's name says is not said again."""
     words = []
-    for name, value in parameters.items():
+    for name, value in attempt.parameters.items():
         noun, _, unit = name.rpartition("_")
-        words.append(f"{value:g} {unit}" if noun == "n" else f"{noun} {value:g} {'%' if unit == 'percent' else unit}")
-    return ", ".join(words)
+        amount = f"{value:.3g} {'%' if unit == 'percent' else unit}"
+        words.append(amount if noun == "n" or noun in attempt.method else f"{noun} {amount}")
+    return words
 
 
 def _level(level: LevelCard, *, is_working: bool) -> tuple[str, ...]:
@@ -115,7 +113,7 @@ def _level(level: LevelCard, *, is_working: bool) -> tuple[str, ...]:
 
 
 def _stage(stage: StageCard) -> tuple[str, ...]:
-    place = _NOTHING if stage.block is None else f"{stage.block.removeprefix('blocks/')}, row {stage.row}"
+    place = _NOTHING if stage.block is None else f"…{stage.block[-_HASH_LENGTH:]}, row {stage.row}"  # its end is unique
     return (
         stage.stage,
         "done" if stage.failure is None else "failed",
