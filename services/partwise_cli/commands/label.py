@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from partwise.store.records import RevisionKind
+from partwise.store.records import MeshRole, RevisionKind
 from partwise.workspace.choices import ExportFormat, Segmentation
 from partwise_cli.arguments import CollectionOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
@@ -94,6 +94,7 @@ def export(
     file_format: Annotated[
         ExportFormat, typer.Option("--format", help="seg: part ids as text. ply: coloured mesh.")
     ] = ExportFormat.SEG,
+    on: Annotated[MeshRole, typer.Option(help="original: on the faces of the files as they came.")] = MeshRole.WORKING,
     collection: CollectionOption = None,
 ) -> None:
     """Write labels out.  [dim]partwise export ws out/ --format ply[/dim]"""
@@ -101,9 +102,9 @@ def export(
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
-    with open_workspace(ws) as workspace:
+    with open_workspace(ws) as workspace, shape_progress("export") as on_progress:
         found = find_collection(workspace, collection)
-        report = export_labels(workspace, found, segmentation, file_format, out)
+        report = export_labels(workspace, found, segmentation, file_format, out, on, on_progress)
     without = f"; {counted(report.n_without, 'shape')} without {segmentation.value} labels" if report.n_without else ""
     typer.echo(f"{segmentation.value} labels of {counted(report.n_written, 'shape')} written{without}")
     typer.echo(f"manifest: {report.manifest}")

@@ -19,6 +19,7 @@ FORMAT = "partwise.export"
 FORMAT_VERSION = 2
 _READ_VERSIONS = (1, 2)  # 1 lacked what has a default
 SEGMENTATIONS = ("confirmed", "refined", "predicted")
+MESHES = ("working", "original")
 ManifestPart = PartEntry
 
 
@@ -45,6 +46,11 @@ class ManifestShape:
     faces_per_part : part id → number of faces with it; −1 for unlabelled. Sums to `n_faces`.
     model_version : of predicted and refined labels, which may come from different models; None for confirmed ones.
     kind : one of `LABEL_KINDS`; "" where the export did not say.
+    mesh : "working", or "original": the faces of the source file; "" where the export did not say.
+    revision_ids : of confirmed labels: the revision on record, what that was moved from, and so on.
+    agreement : share of the area in [0, 1] that survives the way from the mesh where the labels are on record to this
+        one and back; None where this is that mesh.
+    is_in_review : the labels wait for someone to look at them again.
     """
 
     source_key: str
@@ -55,6 +61,10 @@ class ManifestShape:
     files: tuple[ManifestFile, ...]
     model_version: int | None = None
     kind: str = ""
+    mesh: str = ""
+    revision_ids: tuple[int, ...] = ()
+    agreement: float | None = None
+    is_in_review: bool = False
 
     def __post_init__(self) -> None:
         check_sha256(self.mesh_hash, f"mesh_hash of {self.source_key}")
@@ -63,6 +73,8 @@ class ManifestShape:
             raise ParameterError(
                 f"the kind of {self.source_key}'s labels must be one of {LABEL_KINDS} but is {self.kind!r}; choose one"
             )
+        if self.mesh not in ("", *MESHES):
+            raise ParameterError(f"labels must be on one of {MESHES} but {self.source_key}'s are on {self.mesh!r}")
         if min(self.faces_per_part.values(), default=0) < 0 or sum(self.faces_per_part.values()) != self.n_faces:
             raise ParameterError(
                 f"faces_per_part of {self.source_key} must sum to {self.n_faces} faces but are {self.faces_per_part}; "
@@ -163,4 +175,6 @@ def file_sha256(path: Path) -> str:
 def _shape(fields: dict[str, object]) -> ManifestShape:
     faces_per_part = {int(part): count for part, count in fields["faces_per_part"].items()}  # type: ignore[attr-defined]
     files = tuple(ManifestFile(**file) for file in fields["files"])  # type: ignore[attr-defined]
-    return ManifestShape(**{**fields, "faces_per_part": faces_per_part, "files": files})  # type: ignore[arg-type]
+    revision_ids: tuple[int, ...] = tuple(fields.get("revision_ids", ()))  # type: ignore[arg-type]
+    converted = {"faces_per_part": faces_per_part, "files": files, "revision_ids": revision_ids}
+    return ManifestShape(**{**fields, **converted})  # type: ignore[arg-type]

@@ -15,7 +15,17 @@ from partwise.store.block_kinds import EVALUATION, FEATURES, MESH, N_BINS, N_LIG
 from partwise.store.blocks import BlockKind
 from partwise.store.levels import remeshed_arrays
 from partwise.store.meshes import mesh_arrays
-from partwise.store.records import Collection, Model, NewBlock, NewMesh, NewModel, NewScore, NewShape, NewStageRun
+from partwise.store.records import (
+    Collection,
+    MeshRole,
+    Model,
+    NewBlock,
+    NewMesh,
+    NewModel,
+    NewScore,
+    NewShape,
+    NewStageRun,
+)
 from partwise.workspace import segmentations as stage
 from partwise.workspace.choices import ScoreName
 from partwise.workspace.ingest import source_object
@@ -36,11 +46,13 @@ def ingest(workspace: Workspace, collection: Collection, meshes: Mapping[str, Tr
     return {done.source_key: done.shape_id for done in workspace.catalog.add_shapes(collection.id, batch)}
 
 
-def publish_meshes(workspace: Workspace, meshes: Mapping[int, TriMesh], key: str = "mesh-1") -> str:
+def publish_meshes(
+    workspace: Workspace, meshes: Mapping[int, TriMesh], key: str = "mesh-1", role: MeshRole = MeshRole.WORKING
+) -> str:
     """Publishes the mesh of each shape, by id, in one block; returns its name."""
     address = workspace.arrays.write_block(MESH, [mesh_arrays(mesh) for mesh in meshes.values()])
     made = [
-        NewMesh(shape_id, mesh.content_hash(), mesh.n_vertices, mesh.n_faces, row)
+        NewMesh(shape_id, mesh.content_hash(), mesh.n_vertices, mesh.n_faces, row, role)
         for row, (shape_id, mesh) in enumerate(meshes.items())
     ]
     runs = [

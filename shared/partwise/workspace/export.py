@@ -17,12 +17,13 @@ from partwise.exchange.export_manifest import ExportManifest, ManifestFile, Mani
 from partwise.exchange.ply_labels import LabelledMesh, write_ply_labels
 from partwise.exchange.seg import write_seg
 from partwise.labels.schema import PartSchema
-from partwise.store.records import Collection
+from partwise.store.records import Collection, MeshRole
 from partwise.unlabelled import NO_CLASS, NO_PART_ID
 from partwise.workspace.choices import ExportFormat as ExportFormat
 from partwise.workspace.choices import Segmentation
-from partwise.workspace.segmentations import SegmentedShape, segmented_shapes
-from partwise.workspace.shapes import load_mesh
+from partwise.workspace.placed_labels import PlacedLabels, place
+from partwise.workspace.progress import OnRunProgress, RunProgress
+from partwise.workspace.shapes import load_mesh, pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
 MANIFEST = "manifest.json"
@@ -38,9 +39,17 @@ class ExportReport:
 
 
 def export_labels(
-    workspace: Workspace, collection: Collection, segmentation: Segmentation, file_format: ExportFormat, out: Path
+    workspace: Workspace,
+    collection: Collection,
+    segmentation: Segmentation,
+    file_format: ExportFormat,
+    out: Path,
+    role: MeshRole = MeshRole.WORKING,
+    on_progress: OnRunProgress = lambda _: None,
 ) -> ExportReport:
     """Writes `out/<source key without suffix>.<format>` for each shape that has such labels, and the manifest, last.
+
+    `role` says on which mesh: the working mesh, or the faces of the source file, to which labels are mapped back.
 
     Where two shapes differ only in their suffix, the later one's file keeps it: `a.obj.seg`. Labels are part ids in the
     order of the file's faces, −1 where unlabelled. Nothing appears in `out` before all files are written.
@@ -54,49 +63,66 @@ def export_labels(
     with _staging_folder(out) as staging:
         entries: list[ManifestShape] = []
         taken: set[str] = set()
-        for segmented in segmented_shapes(workspace, collection, segmentation):
-            relative = _free_name(segmented.shape.source_key, file_format, taken)
-            taken.add(relative)
-            entries.append(_write(workspace, segmented, schema, file_format, staging, relative))
+        n_shapes, n_seen = sum(workspace.catalog.state_counts(collection.id).values()), 0
+        for page in pages_of_shapes(workspace.catalog, collection.id):
+            for placed in place(workspace, page, segmentation, role):
+                relative = _free_name(placed.shape.source_key, file_format, taken)
+                taken.add(relative)
+                entries.append(_write(workspace, placed, role, schema, file_format, staging, relative))
+                on_progress(RunProgress(n_seen + page.index(placed.shape) + 1, 0, n_shapes))
+            n_seen += len(page)
         if not entries:
             raise NotFoundError(
                 f"export needs {segmentation} labels but no shape of {collection.name!r} has any; see `partwise status`"
             )
-        parts = tuple(ManifestPart(part.id, part.name, part.colour.lower()) for part in schema.parts)
+        parts = tuple(
+            ManifestPart(part.id, part.name, part.colour.lower(), part.gloss, part.parent_id) for part in schema.parts
+        )
         manifest = ExportManifest(
-            __version__, collection.name, schema.version, parts, segmentation.value, tuple(entries)
+            __version__,
+            collection.name,
+            schema.version,
+            parts,
+            segmentation.value,
+            tuple(entries),
+            parameters={"format": file_format.value, "on": role.value},
         )
         write_manifest(staging / MANIFEST, manifest)
         _move([*sorted(taken), MANIFEST], staging, out)
-    n_shapes = sum(workspace.catalog.state_counts(collection.id).values())
     return ExportReport(len(entries), n_shapes - len(entries), out / MANIFEST)
 
 
 def _write(
     workspace: Workspace,
-    segmented: SegmentedShape,
+    placed: PlacedLabels,
+    role: MeshRole,
     schema: PartSchema,
     file_format: ExportFormat,
     folder: Path,
     relative: str,
 ) -> ManifestShape:
-    shape = segmented.shape
-    labels = segmented.labels.astype(np.int64)
+    shape = placed.shape
+    labels = placed.labels.astype(np.int64)
     labels[labels == NO_PART_ID] = NO_CLASS
     path = folder / relative
     if file_format is ExportFormat.SEG:
         write_seg(path, labels)
     else:
         colours = {part.id: rgb(part.colour) for part in schema.parts}
-        write_ply_labels(path, LabelledMesh(load_mesh(workspace, segmented.mesh), labels), colours)
+        write_ply_labels(path, LabelledMesh(load_mesh(workspace, placed.mesh), labels), colours)
     return ManifestShape(
         source_key=shape.source_key,
-        mesh_hash=segmented.mesh.mesh_hash,
+        mesh_hash=placed.mesh.mesh_hash,
         source_hash=shape.source_hash,
         n_faces=len(labels),
         faces_per_part=_faces_per_part(labels),
         files=(ManifestFile(relative, hashlib.sha256(path.read_bytes()).hexdigest()),),
-        model_version=segmented.model_version,
+        model_version=placed.model_version,
+        kind=placed.kind,
+        mesh=role.value,
+        revision_ids=placed.revision_ids,
+        agreement=placed.agreement,
+        is_in_review=placed.is_in_review,
     )
 
 

@@ -160,10 +160,10 @@ def waits_for_review(moved: LabelRevision) -> bool:
 
 def origin_on(catalog: LabelCatalog, head: LabelRevision, mesh_hash: str) -> LabelRevision | None:
     """The revision on this mesh that is the head or that the head was moved from; None if none of them is on it."""
-    return next((each for each in _with_origins(catalog, head) if each.mesh_hash == mesh_hash), None)
+    return next((each for each in with_origins(catalog, head) if each.mesh_hash == mesh_hash), None)
 
 
-def _with_origins(catalog: LabelCatalog, head: LabelRevision) -> Iterator[LabelRevision]:
+def with_origins(catalog: LabelCatalog, head: LabelRevision) -> Iterator[LabelRevision]:
     """The head, what it was moved from, and so on back to what somebody made."""
     yield head
     while head.origin is not None:
@@ -182,4 +182,4 @@ def _source(workspace: Workspace, head: LabelRevision, mesh_hash: str) -> LabelR
     accepted = {
         review.revision_id for review in catalog.reviews(head.shape_id) if review.outcome is ReviewOutcome.ACCEPTED
     }
-    return next(each for each in _with_origins(catalog, head) if each.origin is None or each.id in accepted)
+    return next(each for each in with_origins(catalog, head) if each.origin is None or each.id in accepted)

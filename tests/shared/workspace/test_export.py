@@ -170,10 +170,11 @@ def test_a_folder_in_the_place_of_a_file_is_named(confirmed, tmp_path: Path) -> 
         _export(confirmed, tmp_path)
 
 
-def test_labels_with_a_part_that_was_removed_since_are_refused(confirmed, tmp_path: Path) -> None:
-    confirmed.workspace.catalog.remove_part(confirmed.collection.id, 2)
+def test_labels_with_a_part_that_was_removed_since_are_refused(filled, tmp_path: Path) -> None:
+    filled.refined(filled.described().evaluated())
+    filled.workspace.catalog.remove_part(filled.collection.id, 2)
     with raises(ParameterError, "a.off", "[2]"):
-        _export(confirmed, tmp_path / "out")
+        _export(filled, tmp_path / "out", Segmentation.REFINED)
     assert not (tmp_path / "out").exists()
 
 

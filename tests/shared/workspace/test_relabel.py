@@ -6,12 +6,11 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from partwise.geometry.faces import face_centroids
 from partwise.mesh import TriMesh
 from partwise.store.meshes import kept_mesh_key
 from partwise.store.records import Collection, LabelRevision, RevisionKind, Shape, ShapeState
 from partwise.store.reviews import ReviewOutcome, ReviewReason
-from partwise.testing.meshes import subdivided
+from partwise.testing.spheres import ball, halves, speckles
 from partwise.testing.workspaces import publish_meshes
 from partwise.workspace import relabel as module
 from partwise.workspace.garbage import collect_garbage
@@ -22,28 +21,7 @@ from partwise.workspace.workspace import Workspace
 KEY = "a.off"
 
 
-def ball(n_splits: int) -> TriMesh:
-    """An octahedron whose faces are split in four so many times, on the unit sphere."""
-    corners = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=np.float64)
-    faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
-    mesh = TriMesh(corners, faces)
-    for _ in range(n_splits):
-        mesh = subdivided(mesh)
-        mesh = TriMesh(mesh.vertices / np.linalg.norm(mesh.vertices, axis=1, keepdims=True), mesh.faces)
-    return TriMesh(mesh.vertices.astype(np.float32), mesh.faces)
-
-
 COARSE, MIDDLE, FINE = ball(1), ball(2), ball(3)
-
-
-def halves(mesh: TriMesh) -> np.ndarray:
-    """Part 1 above, part 2 below: at every resolution the border runs along edges."""
-    return np.where(face_centroids(mesh)[:, 2] > 0, 1, 2).astype(np.uint16)
-
-
-def speckles(mesh: TriMesh) -> np.ndarray:
-    """Labels that no coarser mesh can hold."""
-    return (np.arange(mesh.n_faces) % 2 + 1).astype(np.uint16)
 
 
 @dataclass
