@@ -4,7 +4,7 @@ import errno
 import sys
 from dataclasses import dataclass
 
-from partwise.errors import PartwiseError, StoreError
+from partwise.errors import PartwiseError, StoreError, WorkerError
 
 SOME_FAILED = 1
 """The command is done but some shapes or files failed."""
@@ -33,7 +33,7 @@ def ending_of(error: Exception) -> Ending:
     if isinstance(cause, Exception):
         error = cause
     if isinstance(error, PartwiseError):
-        return Ending(STORE_ERROR if isinstance(error, StoreError) else INPUT_ERROR, str(error))
+        return Ending(STORE_ERROR if isinstance(error, StoreError | WorkerError) else INPUT_ERROR, str(error))
     if isinstance(error, OSError):
         return Ending(STORE_ERROR, _of_the_system(error))
     if isinstance(error, MemoryError):

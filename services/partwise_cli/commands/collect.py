@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from partwise.workspace.status import CollectionStatus
 
 MAX_REASONS = 20
+FailureReason = Literal["error", "deadline", "memory", "crash"]
+"""As `FailureKind`, which the command line does not load to start."""
 Axis = Literal["x", "y", "z"]
 RemeshPolicy = Literal["auto", "never"]
 UP = "Which axis points up in pictures."
@@ -123,11 +125,14 @@ def retry(
     ws: WorkspaceArgument,
     collection: CollectionOption = None,
     stage: Annotated[str | None, typer.Option(help="Only failures of this stage.", show_default=False)] = None,
+    reason: Annotated[FailureReason | None, typer.Option(help="Only what this ended.", show_default=False)] = None,
+    text: Annotated[str, typer.Option(help="Only failures whose reason has this text.", show_default=False)] = "",
     lost: Annotated[
         bool, typer.Option("--lost", help="Instead: check all stored arrays, give up those that are damaged.")
     ] = False,
 ) -> None:
-    """Forget failures, to try again.  [dim]partwise retry ws --stage mesh[/dim]"""
+    """Forget failures to retry.  [dim]partwise retry ws --reason memory[/dim]"""
+    from partwise.store.records import FailureKind
     from partwise.workspace.recovery import give_up_lost_blocks
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
@@ -139,11 +144,14 @@ def retry(
         typer.echo(f"{counted(len(names), 'block')} lost or damaged{again}")
         return
     with open_workspace(ws) as workspace:
-        n_cleared = workspace.catalog.clear_failures(find_collection(workspace, collection).id, stage)
+        collection_id = find_collection(workspace, collection).id
+        kind = None if reason is None else FailureKind(reason)
+        n_cleared = workspace.catalog.clear_failures(collection_id, stage, kind=kind, reason_contains=text)
     if n_cleared:
         typer.echo(f"{counted(n_cleared, 'failure')} forgotten; run the command that failed again")
-    else:
-        typer.echo("no failures on record" if stage is None else f"no failures of stage {stage!r} on record")
+        return
+    asked = [f"of stage {stage!r}" if stage else "", f"by {reason}" if reason else "", f"with {text!r}" if text else ""]
+    typer.echo(" ".join(["no failures", *filter(None, asked), "on record"]))
 
 
 def status(

@@ -19,6 +19,7 @@ from partwise.store.records import (
     Collection,
     Embedding,
     Failure,
+    FailureKind,
     FirstShape,
     IngestedShape,
     LabelRevision,
@@ -197,9 +198,18 @@ class StageCatalog(Protocol):
         ...
 
     def clear_failures(
-        self, collection_id: int, stage: str | None = None, shape_ids: SizedIterable[int] | None = None
+        self,
+        collection_id: int,
+        stage: str | None = None,
+        shape_ids: SizedIterable[int] | None = None,
+        *,
+        kind: FailureKind | None = None,
+        reason_contains: str = "",
     ) -> int:
-        """Forget failed runs so that they are tried again; returns how many."""
+        """Forget failed runs so that they are tried again, those that meet all that is given; returns how many.
+
+        kind : what the failure's detail says. reason_contains : any text, in either case of its letters.
+        """
         ...
 
     def stage_runs(self, shape_ids: SizedIterable[int], stage: str) -> Mapping[int, StageRun]:

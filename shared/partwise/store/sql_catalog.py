@@ -177,10 +177,16 @@ class SqlCatalog:
             stages.record_failure(connection, failure, self._clock())
 
     def clear_failures(
-        self, collection_id: int, stage: str | None = None, shape_ids: SizedIterable[int] | None = None
+        self,
+        collection_id: int,
+        stage: str | None = None,
+        shape_ids: SizedIterable[int] | None = None,
+        *,
+        kind: r.FailureKind | None = None,
+        reason_contains: str = "",
     ) -> int:
         with writing(self._engine) as connection:
-            return stages.clear_failures(connection, collection_id, stage, shape_ids)
+            return stages.clear_failures(connection, collection_id, stage, shape_ids, kind, reason_contains)
 
     def stage_runs(self, shape_ids: SizedIterable[int], stage: str) -> Mapping[int, r.StageRun]:
         with reading(self._engine) as connection:

@@ -2,23 +2,25 @@
 
 import json
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from partwise.errors import ConfigError, ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.io.write import write_mesh
 from partwise.mesh import TriMesh
-from partwise.store.records import NewFailure
+from partwise.store.records import FailureKind, NewFailure
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.workspace import open_workspace
+from partwise_cli.commands.collect import FailureReason
 from partwise_workers import passes
 
 
-def _fail(ws: Path, source_key: str, stage: str, reason: str) -> None:
+def _fail(ws: Path, source_key: str, stage: str, reason: str, kind: str = "error") -> None:
     with open_workspace(ws) as workspace:
         collection = workspace.catalog.get_collection("mugs")
         shape = workspace.catalog.shape_by_key(collection.id, source_key)
-        workspace.catalog.record_failure(NewFailure(shape.id, stage, "k", reason))
+        workspace.catalog.record_failure(NewFailure(shape.id, stage, "k", reason, detail={"kind": kind}))
 
 
 # init
@@ -167,6 +169,22 @@ def test_retry_forgets_failures(invoke, ingested: Path) -> None:
     assert invoke("retry", ingested).stdout.startswith("2 failures forgotten")
     assert invoke("retry", ingested).stdout == "no failures on record\n"
     assert invoke("retry", ingested, "--stage", "mesh").stdout == "no failures of stage 'mesh' on record\n"
+
+
+@pytest.mark.parametrize(
+    ("options", "n_cleared"),
+    [(("--reason", "memory"), 1), (("--text", "TOO"), 2), (("--reason", "deadline", "--text", "flat"), 0)],
+)
+def test_retry_forgets_what_is_asked_for(invoke, ingested: Path, options: tuple[str, ...], n_cleared: int) -> None:
+    _fail(ingested, "a.off", "mesh", "too flat", "error")
+    _fail(ingested, "b.off", "mesh", "too large", "memory")
+    _fail(ingested, "c.off", "mesh", "it was slow", "deadline")
+    said = invoke("retry", ingested, *options).stdout
+    assert said.startswith(f"{n_cleared} failure" if n_cleared else "no failures by deadline with 'flat' on record")
+
+
+def test_retry_knows_every_kind_of_failure() -> None:
+    assert set(get_args(FailureReason)) == set(FailureKind)
 
 
 # status

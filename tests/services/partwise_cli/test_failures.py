@@ -25,6 +25,10 @@ def test_a_store_out_of_reach_ends_with_a_code_of_its_own() -> None:
     assert ending_of(errors.StoreError("no room")) == Ending(STORE_ERROR, "no room")
 
 
+def test_ray_out_of_reach_ends_with_the_same_code() -> None:
+    assert ending_of(errors.WorkerError("no Ray")) == Ending(STORE_ERROR, "no Ray")
+
+
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
 def test_a_full_disk_that_nobody_foresaw_is_still_one(number: int) -> None:
     ending = ending_of(OSError(number, "…", "/scratch/x"))

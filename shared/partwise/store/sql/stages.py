@@ -12,6 +12,7 @@ from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
 from partwise.store.records import (
     Failure,
+    FailureKind,
     NewBlock,
     NewFailure,
     NewMesh,
@@ -189,12 +190,21 @@ def record_failure(connection: Connection, failure: NewFailure, now: datetime) -
 
 
 def clear_failures(
-    connection: Connection, collection_id: int, stage: str | None, shape_ids: SizedIterable[int] | None
+    connection: Connection,
+    collection_id: int,
+    stage: str | None,
+    shape_ids: SizedIterable[int] | None,
+    kind: FailureKind | None,
+    reason_contains: str,
 ) -> int:
     in_collection = t.stage_run.c.shape_id.in_(select(t.shape.c.id).where(t.shape.c.collection_id == collection_id))
     statement = delete(t.stage_run).where(is_failed_run(), in_collection)
     if stage is not None:
         statement = statement.where(t.stage_run.c.stage == stage)
+    if kind is not None:
+        statement = statement.where(t.stage_run.c.summary["kind"].as_string() == kind.value)
+    if reason_contains:
+        statement = statement.where(t.stage_run.c.reason.icontains(reason_contains, autoescape=True))
     if shape_ids is None:
         return connection.execute(statement).rowcount
     return sum(

@@ -5,7 +5,7 @@ import math
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store.catalog import Catalog
-from partwise.store.records import NewFailure, NewScore, NewStageRun, RunStatus, StageCount
+from partwise.store.records import FailureKind, NewFailure, NewScore, NewStageRun, RunStatus, StageCount
 from partwise.testing.catalog.samples import (
     add_collection,
     label,
@@ -175,6 +175,23 @@ class StageConformance:
         assert catalog.clear_failures(collection.id, stage="check") == 0
         assert catalog.clear_failures(collection.id) == 2
         assert catalog.failures(collection.id) == []
+
+    def test_failures_are_cleared_by_kind(self, catalog: Catalog) -> None:
+        collection, ids = add_collection(catalog, 3)
+        for shape_id, detail in zip(ids, ({"kind": "memory"}, {"kind": "crash"}, {}), strict=True):
+            catalog.record_failure(NewFailure(shape_id, "describe", "k1", "too much memory", detail=detail))
+        assert catalog.clear_failures(collection.id, kind=FailureKind.DEADLINE) == 0
+        assert catalog.clear_failures(collection.id, kind=FailureKind.MEMORY, reason_contains="slow") == 0
+        assert catalog.clear_failures(collection.id, kind=FailureKind.MEMORY, reason_contains="much") == 1
+        assert {failure.run.shape_id for failure in catalog.failures(collection.id)} == set(ids[1:])
+
+    def test_failures_are_cleared_by_what_their_reason_says(self, catalog: Catalog) -> None:
+        collection, ids = add_collection(catalog, 2)
+        for shape_id, reason in zip(ids, ("Lost 50% of it", "50 faces_left"), strict=True):
+            catalog.record_failure(NewFailure(shape_id, "describe", "k1", reason))
+        assert catalog.clear_failures(collection.id, reason_contains="0_") == 0  # no wildcards
+        assert catalog.clear_failures(collection.id, reason_contains="lost 50% OF") == 1
+        assert [failure.run.shape_id for failure in catalog.failures(collection.id)] == ids[1:]
 
     def test_failure_of_an_unknown_shape_is_refused(self, catalog: Catalog) -> None:
         with raises(NotFoundError, "99"):
