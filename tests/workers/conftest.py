@@ -3,6 +3,7 @@
 The workers get the stages by value, as they cannot import this module.
 """
 
+import ctypes
 import errno
 import os
 import signal
@@ -11,6 +12,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -66,15 +68,30 @@ class FakeStage:
 
     def _run(self, inputs: ShapeInputs) -> StageResult:
         data, source_key = inputs.source()
-        self._behave(dict(line.split(": ") for line in data.decode().splitlines() if ": " in line))
+        behaviours = dict(line.split(": ") for line in data.decode().splitlines() if ": " in line)
+        self._behave(behaviours.get(self.name, ""))
+        self._take_steps(inputs, behaviours)
         note(self.log, f"{self.name}-{source_key}")
         values = np.frombuffer(data, dtype=np.uint8).astype(np.int64)
         if self.reads is not None:
             values = values + inputs.array(self.reads, "values")
-        return StageResult({"values": values * (1 + self.parameter)}, {"sum": int(values.sum())})
+        summary = {"sum": int(values.sum()), "failed_steps": dict(inputs.failed_steps)}
+        return StageResult({"values": values * (1 + self.parameter)}, summary)
 
-    def _behave(self, behaviours: Mapping[str, str]) -> None:
-        behaviour = behaviours.get(self.name, "")
+    def _take_steps(self, inputs: ShapeInputs, behaviours: Mapping[str, str]) -> None:
+        """Steps `0`, `1`, …, until one does not fail; the source has their behaviour as `stage 0: behaviour`."""
+        if self.n_steps == 1:
+            return
+        for step in map(str, range(self.n_steps)):
+            if step not in inputs.failed_steps:
+                inputs.begin(step)
+                self._behave(behaviours.get(f"{self.name} {step}", ""))
+                return
+        raise MeshError("a step must be left but none is; look at the file")
+
+    def _behave(self, behaviour: str) -> None:
+        if behaviour:
+            print(f"{self.name}: it {behaviour} now")  # noqa: T201 - what the log's tail is to hold
         if behaviour == "refuses":
             raise MeshError("a mesh must have faces but has none; was it cut off?")
         if behaviour == "crashes":
@@ -84,10 +101,36 @@ class FakeStage:
         if behaviour == "hangs":
             threading.Event().wait()
         if behaviour == "fills the disk":
-            os.fsync = refuse_for_want_of_room
+            os.replace = os.fsync = refuse_for_want_of_room
+        if behaviour in NATIVE:
+            NATIVE[behaviour]()
 
 
-def refuse_for_want_of_room(descriptor: int) -> None:
+def hang_with_the_interpreter() -> None:
+    ctypes.PyDLL(None).sleep(10**6)  # unlike CDLL, holds the interpreter's lock all the while
+
+
+def read_address_zero() -> None:
+    ctypes.string_at(0)
+
+
+def allocate_without_end() -> None:
+    kept = []
+    while True:
+        kept.append(np.ones(4_000_000))
+
+
+NATIVE: dict[str, Callable[[], object]] = {
+    "hangs with the interpreter": hang_with_the_interpreter,
+    "reads address zero": read_address_zero,
+    "allocates without end": allocate_without_end,
+    "aborts": os.abort,
+    "exits": partial(os._exit, 7),
+    "leaves": partial(sys.exit, 7),
+}
+
+
+def refuse_for_want_of_room(*_: object) -> None:
     raise OSError(errno.ENOSPC, "No space left on device")
 
 
