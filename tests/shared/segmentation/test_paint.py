@@ -185,6 +185,12 @@ def test_paint_is_on_the_vertices_that_are_served() -> None:
     np.testing.assert_array_equal(PaintSurface.build(fine).centroids, PaintSurface.build(served).centroids)
 
 
+def test_corners_are_added_in_the_specified_order() -> None:
+    far = 2.0**60  # one more or less is lost beside it
+    mesh = TriMesh(np.array([[1, far, far], [far, 1, -far], [-far, -far, 1]]), np.array([[0, 1, 2]]))
+    assert PaintSurface.build(mesh).centroids.tolist() == [[0.0, 0.0, 1 / 3]]
+
+
 def test_a_vertex_that_no_face_uses_does_not_widen_the_brush() -> None:
     corners, faces = _square()
     mesh = TriMesh(np.concatenate([corners, [[9, 9, 9]]]), faces)
