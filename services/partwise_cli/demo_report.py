@@ -7,8 +7,8 @@ import typer
 from rich.markup import escape
 
 from partwise.workspace.assessment import ShapeAccuracy
-from partwise_cli.demo import DemoReport
-from partwise_cli.terminal import console, print_table
+from partwise_cli.demo import DemoReport, Remeshing
+from partwise_cli.terminal import console, counted, print_table
 
 
 def print_report(report: DemoReport) -> None:
@@ -27,6 +27,7 @@ def print_report(report: DemoReport) -> None:
     )
     times = ", ".join(f"{step} {seconds:.0f} s" for step, seconds in report.seconds.items())
     lines = {
+        "Remeshing": _remeshing(report.remeshing),
         "Time": f"{sum(report.seconds.values()):.0f} s: {times}",
         "Shapes": str(report.shapes),
         "Workspace": str(report.workspace),
@@ -36,6 +37,12 @@ def print_report(report: DemoReport) -> None:
     for label, value in lines.items():
         console().print(f"[bold]{label:<10}[/bold] {escape(value)}", soft_wrap=True)
     typer.echo(f"\nLook at the queue:  partwise queue {report.workspace}")
+
+
+def _remeshing(made: Remeshing) -> str:
+    refused = f", {made.n_refused} could not be" if made.n_refused else ""
+    core_s = f" at a median of {made.median_core_s:.1f} core-seconds" if made.n_remeshed else ""
+    return f"{counted(made.n_as_is, 'shape')} taken as they are, {made.n_remeshed} soups remeshed{core_s}{refused}"
 
 
 def report_as_json(report: DemoReport) -> dict[str, dict[str, dict[str, float]]]:

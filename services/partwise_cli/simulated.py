@@ -17,7 +17,7 @@ from partwise_cli.terminal import Advance
 
 @dataclass(frozen=True, slots=True)
 class SimulationRequest:
-    """What `partwise simulate` was asked for.
+    """What `partwise simulate` was asked for. dirty_every : where not all are dirty, one in so many is; 0 for none.
 
     Raises
     ------
@@ -29,10 +29,15 @@ class SimulationRequest:
     seed: int
     dirty: bool = False
     n_faces: int | None = None
+    dirty_every: int = 0
 
     def __post_init__(self) -> None:
         # Checks its arguments at once and makes nothing until it is iterated.
         simulate_collection(self.category, self.n_shapes, self.seed, dirty=self.dirty, n_faces=self.n_faces)
+
+    def is_dirty(self, index: int) -> bool:
+        """Whether the shape of this index is a soup."""
+        return self.dirty or (self.dirty_every > 0 and (index + 1) % self.dirty_every == 0)
 
     @property
     def part_names(self) -> tuple[str, ...]:
@@ -60,6 +65,6 @@ def _leave_interrupts_to_the_parent() -> None:
 def _write_shape(request: SimulationRequest, out: Path, index: int) -> None:
     seed = shape_seed(request.category, request.seed, index)
     name = f"{request.category.removesuffix('s')}-{index:04d}"
-    shape = simulate_shape(request.category, seed, name, dirty=request.dirty, n_faces=request.n_faces)
+    shape = simulate_shape(request.category, seed, name, dirty=request.is_dirty(index), n_faces=request.n_faces)
     write_mesh(shape.mesh, out / f"{shape.name}.off")
     write_psb_labels(out / f"{shape.name}_labels.txt", NamedLabels(shape.part_names, shape.labels))

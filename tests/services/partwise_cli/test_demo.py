@@ -9,7 +9,7 @@ from partwise.errors import ConfigError, ParameterError
 from partwise.store.records import Shape
 from partwise.workspace.assessment import ShapeAccuracy
 from partwise_cli import demo
-from partwise_cli.demo import MARKER, DemoReport, DemoRequest, prepare_folder
+from partwise_cli.demo import MARKER, DemoReport, DemoRequest, Remeshing, prepare_folder
 from partwise_cli.demo_report import print_report, report_as_json
 
 
@@ -25,6 +25,7 @@ def report(tmp_path: Path) -> DemoReport:
     return DemoReport(
         request=DemoRequest("mugs", 10, 2, 1, 50),
         n_described=10,
+        remeshing=Remeshing(7, 2, 1, 3.14),
         predicted=_accuracies(predicted),
         refined=_accuracies([value + 0.1 for value in predicted]),
         model_version=1,
@@ -74,6 +75,7 @@ def test_the_report_shows_figures_and_where_files_are(report: DemoReport, capsys
     (row,) = [line for line in out.splitlines() if line.startswith("│ all")]
     assert [cell.strip() for cell in row.strip("│").split("│")] == ["all", "50.0%", "60.0%", "25.0%", "30.0%"]
     assert "3 s: simulate 1 s, train 2 s" in out
+    assert "7 shapes taken as they are, 2 soups remeshed at a median of 3.1 core-seconds, 1 could not be" in out
     for path in (report.shapes, report.workspace, report.exported, report.picture):
         assert str(path) in out
 

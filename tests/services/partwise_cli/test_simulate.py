@@ -41,6 +41,15 @@ def test_the_same_seed_makes_the_same_files(written, tmp_path: Path) -> None:
         assert path.read_bytes() == (written[0] / path.name).read_bytes()
 
 
+def test_some_or_all_shapes_are_dirty() -> None:
+    for request, dirty in (
+        (SimulationRequest("mugs", 6, 1), []),
+        (SimulationRequest("mugs", 6, 1, dirty=True), [0, 1, 2, 3, 4, 5]),
+        (SimulationRequest("mugs", 6, 1, dirty_every=3), [2, 5]),
+    ):
+        assert [index for index in range(6) if request.is_dirty(index)] == dirty
+
+
 def test_a_file_in_the_place_of_the_folder_is_named(invoke, tmp_path: Path) -> None:
     (tmp_path / "out").write_text("")
     result = invoke("simulate", "mugs", tmp_path / "out", "--count", "1", "--faces", "1000")
