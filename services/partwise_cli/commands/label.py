@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from partwise.store.records import MeshRole, RevisionKind
-from partwise.workspace.choices import ExportFormat, Segmentation
+from partwise.workspace.choices import ExportFormat, PointSampling, Segmentation
 from partwise_cli.arguments import CollectionOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
 from partwise_cli.terminal import counted, shape_progress, warning_lines
@@ -92,9 +92,16 @@ def export(
     out: Annotated[Path, typer.Argument(help="Folder for the files and manifest.json.", show_default=False)],
     segmentation: Annotated[Segmentation, typer.Option(help="Which labels.")] = Segmentation.CONFIRMED,
     file_format: Annotated[
-        ExportFormat, typer.Option("--format", help="seg: part ids as text. ply: coloured mesh.")
+        ExportFormat,
+        typer.Option(
+            "--format",
+            help="seg: part ids as text. ply: coloured mesh. glb: a node for each part. npz: arrays. "
+            "shapenetpart: points. coco: one JSON for all.",
+        ),
     ] = ExportFormat.SEG,
     on: Annotated[MeshRole, typer.Option(help="original: on the faces of the files as they came.")] = MeshRole.WORKING,
+    points: Annotated[int, typer.Option(help="Points a shape, for shapenetpart.", min=1)] = 2_500,
+    seed: Annotated[int, typer.Option(help="What draws the points.", min=0)] = 0,
     collection: CollectionOption = None,
 ) -> None:
     """Write labels out.  [dim]partwise export ws out/ --format ply[/dim]"""
@@ -102,9 +109,10 @@ def export(
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
+    sampling = PointSampling(points, seed)
     with open_workspace(ws) as workspace, shape_progress("export") as on_progress:
         found = find_collection(workspace, collection)
-        report = export_labels(workspace, found, segmentation, file_format, out, on, on_progress)
+        report = export_labels(workspace, found, segmentation, file_format, out, on, on_progress, sampling)
     without = f"; {counted(report.n_without, 'shape')} without {segmentation.value} labels" if report.n_without else ""
     typer.echo(f"{segmentation.value} labels of {counted(report.n_written, 'shape')} written{without}")
     typer.echo(f"manifest: {report.manifest}")

@@ -20,7 +20,6 @@ FORMAT_VERSION = 2
 _READ_VERSIONS = (1, 2)  # 1 lacked what has a default
 SEGMENTATIONS = ("confirmed", "refined", "predicted")
 MESHES = ("working", "original")
-ManifestPart = PartEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +98,7 @@ class ExportManifest:
     partwise_version: str
     collection: str
     schema_version: int
-    parts: tuple[ManifestPart, ...]
+    parts: tuple[PartEntry, ...]
     segmentation: str
     shapes: tuple[ManifestShape, ...]
     files: tuple[ManifestFile, ...] = ()

@@ -1,11 +1,10 @@
 """Writes labels out: one file a shape, and a manifest that says what they are, with hashes."""
 
-import hashlib
 import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
 
 import numpy as np
@@ -13,20 +12,25 @@ from jaxtyping import Int
 
 from partwise import __version__
 from partwise.errors import ConflictError, NotFoundError, StoreError
-from partwise.exchange.export_manifest import ExportManifest, ManifestFile, ManifestPart, ManifestShape, write_manifest
-from partwise.exchange.ply_labels import LabelledMesh, write_ply_labels
-from partwise.exchange.seg import write_seg
-from partwise.labels.schema import PartSchema
+from partwise.exchange.coco import CocoDataset, CocoShape, write_coco
+from partwise.exchange.export_manifest import (
+    ExportManifest,
+    ManifestFile,
+    ManifestShape,
+    file_sha256,
+    write_manifest,
+)
 from partwise.store.records import Collection, MeshRole
-from partwise.unlabelled import NO_CLASS, NO_PART_ID
 from partwise.workspace.choices import ExportFormat as ExportFormat
-from partwise.workspace.choices import Segmentation
+from partwise.workspace.choices import PointSampling, Segmentation
+from partwise.workspace.export_files import COCO_FILE, ENDINGS, coco_of, file_labels, part_table, write_shape
 from partwise.workspace.placed_labels import PlacedLabels, place
 from partwise.workspace.progress import OnRunProgress, RunProgress
-from partwise.workspace.shapes import load_mesh, pages_of_shapes
+from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
 MANIFEST = "manifest.json"
+_DEFAULT_SAMPLING = PointSampling()
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +50,11 @@ def export_labels(
     out: Path,
     role: MeshRole = MeshRole.WORKING,
     on_progress: OnRunProgress = lambda _: None,
+    sampling: PointSampling = _DEFAULT_SAMPLING,
 ) -> ExportReport:
-    """Writes `out/<source key without suffix>.<format>` for each shape that has such labels, and the manifest, last.
+    """Writes `out/<source key without suffix>.<ending>` for each shape that has such labels, and the manifest, last.
+
+    COCO is one file for all, `out/coco.json`; ShapeNetPart has `sampling` points a shape, in `.txt` files.
 
     `role` says on which mesh: the working mesh, or the faces of the source file, to which labels are mapped back.
 
@@ -60,63 +67,60 @@ def export_labels(
     StoreError : a store cannot be read, or the files cannot be written.
     """
     schema = workspace.catalog.parts(collection.id)
+    parts = part_table(schema)
     with _staging_folder(out) as staging:
         entries: list[ManifestShape] = []
+        coco_shapes: list[CocoShape] = []
         taken: set[str] = set()
         n_shapes, n_seen = sum(workspace.catalog.state_counts(collection.id).values()), 0
         for page in pages_of_shapes(workspace.catalog, collection.id):
             for placed in place(workspace, page, segmentation, role):
-                relative = _free_name(placed.shape.source_key, file_format, taken)
-                taken.add(relative)
-                entries.append(_write(workspace, placed, role, schema, file_format, staging, relative))
+                files: tuple[ManifestFile, ...] = ()
+                if file_format is ExportFormat.COCO:
+                    coco_shapes.append(coco_of(workspace, placed, parts))
+                else:
+                    relative = _free_name(placed.shape.source_key, ENDINGS[file_format], taken)
+                    taken.add(relative)
+                    write_shape(workspace, placed, parts, file_format, str(staging / relative), sampling)
+                    files = (ManifestFile(relative, file_sha256(staging / relative)),)
+                entries.append(_entry(placed, role, files))
                 on_progress(RunProgress(n_seen + page.index(placed.shape) + 1, 0, n_shapes))
             n_seen += len(page)
         if not entries:
             raise NotFoundError(
                 f"export needs {segmentation} labels but no shape of {collection.name!r} has any; see `partwise status`"
             )
-        parts = tuple(
-            ManifestPart(part.id, part.name, part.colour.lower(), part.gloss, part.parent_id) for part in schema.parts
-        )
+        if coco_shapes:
+            write_coco(staging / COCO_FILE, CocoDataset(parts, tuple(coco_shapes)))
+            taken.add(COCO_FILE)
         manifest = ExportManifest(
             __version__,
             collection.name,
             schema.version,
-            parts,
+            parts.parts,
             segmentation.value,
             tuple(entries),
-            parameters={"format": file_format.value, "on": role.value},
+            tuple(ManifestFile(COCO_FILE, file_sha256(staging / COCO_FILE)) for _ in coco_shapes[:1]),
+            {"format": file_format.value, "on": role.value, **_sampling(file_format, sampling)},
         )
         write_manifest(staging / MANIFEST, manifest)
         _move([*sorted(taken), MANIFEST], staging, out)
     return ExportReport(len(entries), n_shapes - len(entries), out / MANIFEST)
 
 
-def _write(
-    workspace: Workspace,
-    placed: PlacedLabels,
-    role: MeshRole,
-    schema: PartSchema,
-    file_format: ExportFormat,
-    folder: Path,
-    relative: str,
-) -> ManifestShape:
-    shape = placed.shape
-    labels = placed.labels.astype(np.int64)
-    labels[labels == NO_PART_ID] = NO_CLASS
-    path = folder / relative
-    if file_format is ExportFormat.SEG:
-        write_seg(path, labels)
-    else:
-        colours = {part.id: rgb(part.colour) for part in schema.parts}
-        write_ply_labels(path, LabelledMesh(load_mesh(workspace, placed.mesh), labels), colours)
+def _sampling(file_format: ExportFormat, sampling: PointSampling) -> dict[str, int]:
+    return asdict(sampling) if file_format is ExportFormat.SHAPENETPART else {}
+
+
+def _entry(placed: PlacedLabels, role: MeshRole, files: tuple[ManifestFile, ...]) -> ManifestShape:
+    shape, labels = placed.shape, file_labels(placed)
     return ManifestShape(
         source_key=shape.source_key,
         mesh_hash=placed.mesh.mesh_hash,
         source_hash=shape.source_hash,
         n_faces=len(labels),
         faces_per_part=_faces_per_part(labels),
-        files=(ManifestFile(relative, hashlib.sha256(path.read_bytes()).hexdigest()),),
+        files=files,
         model_version=placed.model_version,
         kind=placed.kind,
         mesh=role.value,
@@ -126,10 +130,10 @@ def _write(
     )
 
 
-def _free_name(source_key: str, file_format: ExportFormat, taken: set[str]) -> str:
+def _free_name(source_key: str, ending: str, taken: set[str]) -> str:
     """Where in the export a shape's file goes: the first of two names that no other shape has."""
     key = PurePosixPath(source_key)
-    for name in (str(key.with_suffix(f".{file_format}")), f"{key}.{file_format}"):
+    for name in (str(key.with_suffix(ending)), f"{key}{ending}"):
         if name not in taken:
             return name
     raise ConflictError(f"each shape's file must have a name of its own but {key} clashes with others; rename it")

@@ -17,12 +17,15 @@ from partwise.store import meshes
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, LabelRevision, Mesh, NewRevision, RevisionKind, Shape
 from partwise.unlabelled import NO_CLASS, NO_PART_ID
+from partwise.workspace.label_sources import NPZ_ENDING, PAIR_ENDING, POINTS_ENDING, read_own_labels
 from partwise.workspace.relabel import MoveReport, move_here, origin_on
 from partwise.workspace.shapes import all_shapes, shape_mesh
 from partwise.workspace.workspace import Workspace
 
 PSB_ENDING = "_labels.txt"
 SEG_ENDING = ".seg"
+# A pair's labels end in .seg as well, so that its points are looked for first.
+_ENDINGS = (PSB_ENDING, PAIR_ENDING, SEG_ENDING, NPZ_ENDING, POINTS_ENDING)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +58,8 @@ def import_labels(
     author: str,
     mover: Callable[[Workspace, Collection], MoveReport] = move_here,
 ) -> ImportReport:
-    """For each shape `a/b.off` reads `a/b_labels.txt` or `a/b.seg` below the folder. A wrong file costs only itself.
+    """For each shape `a/b.off` reads the first of `a/b_labels.txt`, `a/b.pts` with `a/b.seg`, `a/b.seg`, `a/b.npz` and
+    `a/b.txt` (ShapeNetPart points) that is below the folder. A wrong file costs only itself.
 
     A `.seg` file holds part ids of the collection's schema, 0 or −1 for unlabelled. Labels are of the faces of the
     shape's own file or of its working mesh, whichever has so many; of the file where both have. Those of the file are
@@ -86,7 +90,7 @@ def import_labels(
             refused.append(RefusedLabels(str(path), _naming(path, error)))
     if n_imported + n_unchanged + len(refused) == 0:
         raise NotFoundError(
-            f"{folder} must hold <shape>{PSB_ENDING} or <shape>{SEG_ENDING} files but has none for the "
+            f"{folder} must hold <shape>{PSB_ENDING}, {SEG_ENDING}, {NPZ_ENDING} or points' files but has none for the "
             f"{n_unlabelled} shapes of {collection.name!r}; are names and subfolders those of the meshes?"
         )
     return ImportReport(n_imported, n_unchanged, n_unlabelled, tuple(refused), mover(workspace, collection))
@@ -177,8 +181,11 @@ def _import(
     author: str,
 ) -> bool:
     """Commits one file's labels; whether they are new."""
-    mesh = _mesh_of_file(workspace, shape, path)
-    labels = read_labels(path, mesh.n_faces, schema)
+    if path.name.endswith((PSB_ENDING, SEG_ENDING)):
+        mesh = _mesh_of_file(workspace, shape, path)
+        labels = read_labels(path, mesh.n_faces, schema)
+    else:
+        mesh, labels = read_own_labels(workspace, shape, path, schema)
     if _same_labels(workspace, shape, mesh, labels, kind) is not None:
         return False
     shown = workspace.catalog.head_revision(shape.id)
@@ -240,7 +247,7 @@ def _same_labels(
 
 def _label_file(folder: Path, source_key: str) -> Path | None:
     stem = PurePosixPath(source_key).with_suffix("")
-    candidates = (folder / f"{name}{ending}" for name in (source_key, stem) for ending in (PSB_ENDING, SEG_ENDING))
+    candidates = (folder / f"{name}{ending}" for name in (source_key, stem) for ending in _ENDINGS)
     return next((path for path in candidates if path.is_file()), None)
 
 

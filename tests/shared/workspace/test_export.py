@@ -7,14 +7,19 @@ import numpy as np
 import pytest
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError, StoreError
+from partwise.exchange.coco import read_coco
 from partwise.exchange.export_manifest import damaged_files, read_manifest
+from partwise.exchange.glb_parts import read_glb_parts
+from partwise.exchange.label_npz import read_npz
+from partwise.exchange.labelled_points import read_points
 from partwise.exchange.ply_labels import read_ply_labels
 from partwise.exchange.seg import read_seg
 from partwise.store.records import RevisionKind
 from partwise.testing.expect import raises
 from partwise.testing.workspaces import ingest, publish_meshes
-from partwise.workspace.choices import ExportFormat, Segmentation
+from partwise.workspace.choices import ExportFormat, PointSampling, Segmentation
 from partwise.workspace.export import MANIFEST, export_labels, rgb
+from partwise.workspace.export_files import ENDINGS
 from partwise.workspace.labelling import commit_labels, import_labels
 
 LABELS = np.array([1, 1, 2, 0], dtype=np.uint16)
@@ -60,12 +65,48 @@ def test_ply_files_hold_the_mesh_and_the_labels(confirmed, tmp_path: Path) -> No
     assert labelled.mesh.content_hash() == confirmed.meshes["a.off"].content_hash()
 
 
+@pytest.mark.parametrize(("file_format", "read"), [(ExportFormat.GLB, read_glb_parts), (ExportFormat.NPZ, read_npz)])
+def test_glb_and_npz_files_say_what_they_are(confirmed, tmp_path: Path, file_format: ExportFormat, read) -> None:
+    _export(confirmed, tmp_path, file_format=file_format)
+    found = read(tmp_path / f"a.{file_format}")
+    assert found.labelled.labels_on(confirmed.meshes["a.off"]).tolist() == [1, 1, 2, -1]
+    assert found.parts.names == ("body", "handle")
+    assert (found.provenance.source_key, found.provenance.kind) == ("a.off", "human")
+
+
+def test_coco_is_one_file_for_all_shapes(confirmed, tmp_path: Path) -> None:
+    _export(confirmed, tmp_path / "out", file_format=ExportFormat.COCO)
+    assert _files(tmp_path / "out") == ["coco.json", MANIFEST]
+    found = read_coco(tmp_path / "out/coco.json")
+    assert [shape.name for shape in found.shapes] == ["a.off", "sub/c.off"]
+    assert found.shapes[0].labels_on(confirmed.meshes["a.off"]).tolist() == [1, 1, 2, -1]
+
+
+def test_points_are_drawn_as_the_manifest_says(confirmed, tmp_path: Path) -> None:
+    for out in ("one", "two"):
+        export_labels(
+            confirmed.workspace,
+            confirmed.collection,
+            Segmentation.CONFIRMED,
+            ExportFormat.SHAPENETPART,
+            tmp_path / out,
+            sampling=PointSampling(40, seed=7),
+        )
+    manifest = read_manifest(tmp_path / "one" / MANIFEST)
+    assert (manifest.parameters["n_points"], manifest.parameters["seed"]) == (40, 7)
+    points = read_points(tmp_path / "one/sub/c.txt")
+    assert len(points.labels) == 40
+    assert set(points.labels.tolist()) <= {1, 2, -1}
+    assert (tmp_path / "one/a.txt").read_bytes() == (tmp_path / "two/a.txt").read_bytes()
+
+
 @pytest.mark.parametrize("file_format", list(ExportFormat))
 def test_the_manifest_verifies(confirmed, tmp_path: Path, file_format: ExportFormat) -> None:
     manifest = read_manifest(_export(confirmed, tmp_path, file_format=file_format).manifest)
     assert damaged_files(manifest, tmp_path) == ()
-    (tmp_path / f"a.{file_format}").write_bytes(b"1\n")
-    assert damaged_files(manifest, tmp_path) == (f"a.{file_format}",)
+    damaged = "coco.json" if file_format is ExportFormat.COCO else f"a{ENDINGS[file_format]}"
+    (tmp_path / damaged).write_bytes(b"1\n")
+    assert damaged_files(manifest, tmp_path) == (damaged,)
 
 
 def test_the_manifest_says_what_was_exported(confirmed, tmp_path: Path) -> None:
