@@ -79,7 +79,7 @@ class BoundaryParameters:
     form: BoundaryForm = "crease"
     angle_weight: float = 0.5
     band: float = 0.04
-    smoothness: float = 0.2
+    smoothness: float = 0.18
     max_sweeps: int = 20
     least_move_cost: float = 0.4
     flatness: float = 1.0
