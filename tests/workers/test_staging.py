@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from partwise.store.records import NewBlock, NewStageRun
+from partwise.store.records import NewBlock, NewFailure, NewStageRun
+from partwise_workers.last_words import LastWords, last_words_name, note_step, progress_name
 from partwise_workers.plan import chain_keys
 from partwise_workers.staging import sweep_staging
 from partwise_workers.tasks import StagedName
@@ -73,3 +74,39 @@ def test_the_number_swept_is_told(make_bench) -> None:
     for number in range(3):
         stage(bench, "first", shape_id, f"old{number}")
     assert sweep_staging(bench.workspace, bench.collection, bench.stages) == 3
+
+
+def leave_behind(bench, stage: str, shape_id: int, key: str) -> list[str]:
+    """The step and the last words of a process that died."""
+    arrays, name = bench.workspace.arrays, StagedName(stage, shape_id, key)
+    note_step(arrays, name, "attempt 0")
+    arrays.stage(last_words_name(name, "af"), LastWords("log", 1, False).arrays())
+    return sorted([progress_name(name), last_words_name(name, "af")])
+
+
+def test_what_a_dead_process_left_stays_while_its_shape_may_be_in_hand(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    assert leave_behind(bench, "second", *present_key(bench, 1)) == sorted(sweep(bench))
+
+
+def test_what_a_dead_process_left_goes_when_the_stage_is_done(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    shape_id, key = present_key(bench, 0)
+    leave_behind(bench, "first", shape_id, key)
+    block = NewBlock("blocks/fake/1", "fake", 1, 1, "0" * 64)
+    bench.workspace.catalog.publish_block(block, [NewStageRun(shape_id, "first", key, 0)])
+    assert sweep(bench) == []
+
+
+def test_what_a_dead_process_left_goes_when_the_stage_has_failed(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    shape_id, key = present_key(bench, 0)
+    leave_behind(bench, "first", shape_id, key)
+    bench.workspace.catalog.record_failure(NewFailure(shape_id, "first", key, "it died"))
+    assert sweep(bench) == []
+
+
+def test_what_a_dead_process_left_of_other_parameters_goes(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    leave_behind(bench, "first", *present_key(bench.with_stages(first={"parameter": 1}), 0))
+    assert sweep(bench) == []

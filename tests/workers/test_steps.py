@@ -16,7 +16,7 @@ SOURCES = {
     "hopeless.off": "second 0: refuses",
     "hungry.off": "first: allocates without end",
 }
-DEADLINE_S, MEMORY_GB = 4.0, 1.2
+DEADLINE_S, MEMORY_GB = 8.0, 0.6
 
 
 @pytest.fixture(scope="module")

@@ -124,8 +124,10 @@ class _StageWorker:
         self._begin(call, None)
         try:
             made = self._result_of(call, self._inputs)
-        finally:
+        except Exception:  # not SystemExit, which ends this process: then the last words are wanted
             self._watch.idle()
+            raise
+        self._watch.idle()
         if isinstance(made, StageFailure) or call.stage == call.task.stage_keys[-1][0]:
             self._inputs = None  # holds arrays
         else:

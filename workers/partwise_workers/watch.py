@@ -6,8 +6,6 @@ import os
 import subprocess
 import sys
 import uuid
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Protocol
 
@@ -75,13 +73,3 @@ class Sentinel:
             os.write(self._pipe, line)
         except BrokenPipeError:
             os._exit(1)  # nobody watches any more, and whatever is printed would fail: the driver starts another
-
-
-@contextmanager
-def watched(watch: Watch, name: str, memory_gb: float) -> Iterator[None]:
-    """The process is at something for the time of the block."""
-    watch.at(name, memory_gb)
-    try:
-        yield
-    finally:
-        watch.idle()
