@@ -8,10 +8,12 @@ from scipy.spatial import cKDTree
 from partwise.geometry.adjacency import edge_adjacency
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
+from partwise.segmentation.kernels.nearest_centres import nearest_centres
 from partwise.segmentation.patch_parameters import KMeansParameters
 from partwise.segmentation.patch_tree import check_n_patches, patch_tree
 
 _DEFAULTS = KMeansParameters()
+_MOST_CENTRES_BY_LOOP = 500  # beyond, a search tree is faster
 
 
 class KMeansPatches:
@@ -71,19 +73,23 @@ def _lloyd(
 ) -> Int[np.ndarray, " m"]:
     """Nearest centre of each row, (m,) int64; a cluster may be empty."""
     centres = features[_farthest_points(features, n_clusters)]
-    clusters = _nearest(centres, features)
+    clusters = _nearest(features, centres, np.zeros(len(features), dtype=np.int64))
     for _ in range(max_iterations):
         is_used = np.bincount(clusters, minlength=n_clusters) > 0
         centres = np.where(is_used[:, None], _means(features, areas, clusters, n_clusters), centres)
-        nearest = _nearest(centres, features)
-        if np.array_equal(nearest, clusters):
+        moved = _nearest(features, centres, clusters)
+        if np.array_equal(moved, clusters):
             break
-        clusters = nearest
+        clusters = moved
     return clusters
 
 
-def _nearest(centres: np.ndarray, features: np.ndarray) -> Int[np.ndarray, " m"]:
-    nearest: np.ndarray = np.asarray(cKDTree(centres).query(features)[1], dtype=np.int64)
+def _nearest(features: np.ndarray, centres: np.ndarray, first_guess: np.ndarray) -> Int[np.ndarray, " m"]:
+    nearest: np.ndarray
+    if len(centres) > _MOST_CENTRES_BY_LOOP:
+        nearest = np.asarray(cKDTree(centres).query(features)[1], dtype=np.int64)
+    else:
+        nearest = nearest_centres(features, centres, first_guess)
     return nearest
 
 

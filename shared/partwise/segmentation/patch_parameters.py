@@ -54,10 +54,10 @@ class KMeansParameters:
     """
 
     normal_weight: float = 0.2
-    max_iterations: int = 50
+    max_iterations: int = 20
 
     def __post_init__(self) -> None:
         if not (self.normal_weight >= 0 and math.isfinite(self.normal_weight)):
             raise ParameterError(f"normal_weight must be ≥ 0 and finite but is {self.normal_weight}; 0.2 is usual")
         if self.max_iterations < 1:
-            raise ParameterError(f"max_iterations must be at least 1 but is {self.max_iterations}; 50 is usual")
+            raise ParameterError(f"max_iterations must be at least 1 but is {self.max_iterations}; 20 is usual")
