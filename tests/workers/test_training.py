@@ -29,6 +29,7 @@ from partwise.store.records import (
     NewStageRun,
     RevisionKind,
 )
+from partwise.store.reviews import NewReview, ReviewReason
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers import training
 from partwise_workers.model_store import ModelReference, read_model
@@ -150,6 +151,18 @@ def test_labels_of_another_mesh_are_left_out(described) -> None:
         meshes=[new],
     )
     assert list(labelled_shapes(workspace, collection)) == []
+
+
+def test_labels_that_wait_for_a_review_are_left_out(described) -> None:
+    workspace, collection = described
+    label(workspace, collection, 0, LABELS)
+    shape = workspace.catalog.shape_by_key(collection.id, "0.off")
+    head = workspace.catalog.head_revision(shape.id)
+    assert head is not None
+    review = workspace.catalog.add_review(head.id, NewReview(ReviewReason.MAP_BACK))
+    assert list(labelled_shapes(workspace, collection)) == []
+    workspace.catalog.accept_review(review.id, head.author_id)
+    assert len(list(labelled_shapes(workspace, collection))) == 1
 
 
 def test_shapes_described_under_other_parameters_are_left_out(described) -> None:

@@ -86,3 +86,23 @@ def test_default_colours_differ_and_are_valid() -> None:
 def test_unlabelled_is_grey() -> None:
     red, green, blue = (int(default_colour(0)[i : i + 2], 16) for i in (1, 3, 5))
     assert red == green == blue
+
+
+def _with_parents(*parents: int | None) -> PartSchema:
+    """Parts 1, 2, … whose parents are these."""
+    names = ("base", "leg", "foot")
+    return PartSchema(1, tuple(Part(i, names[i - 1], "#E69F00", "", up) for i, up in enumerate(parents, start=1)))
+
+
+def test_ancestors_go_up_to_the_top() -> None:
+    schema = _with_parents(None, 1, 2)
+    assert [schema.ancestors(part_id) for part_id in (1, 2, 3)] == [(), (1,), (2, 1)]
+
+
+@pytest.mark.parametrize(
+    ("parents", "says"),
+    [((1,), "base → base"), ((2, 1), "base → leg → base"), ((2, 3, 2), "base → leg → foot → leg"), ((None, 9), "9")],
+)
+def test_parents_in_a_circle_or_unknown_are_refused(parents: tuple[int | None, ...], says: str) -> None:
+    with pytest.raises(LabelError, match=says):
+        _with_parents(*parents)

@@ -69,6 +69,13 @@ def postgres_catalog(postgres_server: str, migrated_database: str) -> Iterator[S
         yield catalog
 
 
+@pytest.fixture
+def empty_database(postgres_server: str) -> Iterator[str]:
+    """URL of a PostgreSQL database without a catalog."""
+    with _database(postgres_server, "template1") as url:
+        yield url
+
+
 @contextmanager
 def _database(server: str, template: str) -> Iterator[str]:
     """URL of a new database, dropped afterwards."""

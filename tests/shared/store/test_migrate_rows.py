@@ -1,0 +1,96 @@
+"""Rows of the oldest schema are whole after migrating, and what later schemas added is filled from them."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sqlalchemy import Engine, text
+
+from partwise.errors import ConflictError
+from partwise.labels.encoding import encode_labels
+from partwise.store.engine import connect_engine, parsed_url, writing
+from partwise.store.migrate import migrate
+from partwise.store.sql_catalog import SqlCatalog
+from partwise.testing.expect import raises
+
+LABELS = np.array([0, 1, 2, 2], dtype=np.uint16)
+NOW = datetime(2024, 5, 1, 12, tzinfo=UTC)
+OLDEST = "0001"
+
+
+def _fill(engine: Engine) -> None:
+    """Two shapes: the first had two meshes, and labels on the older; the second has none."""
+    encoded = encode_labels(LABELS)
+    values = {"now": NOW, "labels": encoded.blob, "sha256": encoded.sha256}
+    statements = (
+        "INSERT INTO collection (id, name, settings, schema_version, created_at) VALUES (1, 'mugs', '{}', 2, :now)",
+        "INSERT INTO part VALUES (1, 1, 'body', '#E69F00', 'holds', 1, 1, NULL)",
+        "INSERT INTO part VALUES (1, 2, 'handle', '#56B4E9', '', 2, 1, NULL)",
+        "INSERT INTO part VALUES (1, 3, 'lid', '#009E73', '', 3, 1, 2)",
+        "INSERT INTO person VALUES (1, 'ann', :now)",
+        "INSERT INTO shape (id, collection_id, source_key, source_hash, source_suffix, ingested_at) "
+        "VALUES (1, 1, 'a.off', 'x', '.off', :now), (2, 1, 'b.off', 'y', '.off', :now)",
+        "INSERT INTO block VALUES (1, 'blocks/mesh/1', 'mesh', 1, 1, 'c', :now)",
+        "INSERT INTO block VALUES (2, 'blocks/mesh/2', 'mesh', 1, 1, 'c', :now)",
+        "INSERT INTO mesh VALUES ('older', 4, 4, 'kept/meshes/older', :now), ('newer', 4, 4, NULL, :now)",
+        "INSERT INTO shape_mesh VALUES (1, 'older', 1, 0), (1, 'newer', 2, 0)",
+        "INSERT INTO label_revision (id, shape_id, mesh_hash, kind, parent_id, author_id, schema_version, labels, "
+        "n_faces, sha256, created_at) VALUES (1, 1, 'older', 'human', NULL, 1, 1, :labels, 4, :sha256, :now)",
+    )
+    with writing(engine) as connection:
+        for statement in statements:
+            used = {name: value for name, value in values.items() if f":{name}" in statement}
+            connection.execute(text(statement), used)
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def migrated(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SqlCatalog]:
+    """A catalog that began under the oldest schema."""
+    if request.param == "sqlite":
+        url = f"sqlite:///{tmp_path}/catalog.sqlite"
+    else:
+        url = request.getfixturevalue("empty_database")
+    engine = connect_engine(parsed_url(url))
+    migrate(engine, OLDEST)
+    _fill(engine)
+    migrate(engine)
+    with SqlCatalog(engine) as catalog:
+        yield catalog
+
+
+def test_the_newest_mesh_is_the_working_and_the_original_one(migrated: SqlCatalog) -> None:
+    for found in (migrated.meshes([1, 2]), migrated.original_meshes([1, 2])):
+        assert {shape_id: mesh.mesh_hash for shape_id, mesh in found.items()} == {1: "newer"}
+
+
+def test_labels_and_parts_are_as_they_were(migrated: SqlCatalog) -> None:
+    revision = migrated.revision(1)
+    np.testing.assert_array_equal(migrated.labels(1), LABELS)
+    assert (revision.mesh_hash, revision.origin) == ("older", None)
+    schema = migrated.parts(1)
+    assert [(part.name, part.gloss, part.parent_id) for part in schema.parts] == [
+        ("body", "holds", None),
+        ("handle", "", None),
+    ]
+    assert migrated.parts(1, 1).names == ("body", "handle", "lid")
+
+
+def test_parts_that_labels_use_are_known(migrated: SqlCatalog) -> None:
+    with raises(ConflictError, "handle", "1 shape"):
+        migrated.remove_part(1, 2)
+    unused = migrated.add_part(1, "spout").id_of("spout")
+    assert migrated.remove_part(1, unused).names == ("body", "handle")
+
+
+def test_names_of_parts_still_occur_once(migrated: SqlCatalog) -> None:
+    with raises(ConflictError, "body"):
+        migrated.update_part(1, 2, name="body")
+    with pytest.raises(Exception, match=r"(?i)unique"), writing(migrated._engine) as connection:
+        connection.execute(text("UPDATE part SET name = 'body' WHERE id = 2"))
+
+
+def test_revisions_are_still_append_only(migrated: SqlCatalog) -> None:
+    with pytest.raises(Exception, match="append-only"), writing(migrated._engine) as connection:
+        connection.execute(text("DELETE FROM label_revision"))
