@@ -127,7 +127,8 @@ def test_a_store_that_is_down_fails_no_shape(make_bench, monkeypatch) -> None:
 
 def test_a_store_that_is_full_fails_no_shape(make_bench, monkeypatch) -> None:
     bench = make_bench({"a.off": "first: fills the disk"})
-    monkeypatch.setattr(os, "fsync", os.fsync)  # put back what the stage replaces
+    for name in ("replace", "fsync"):
+        monkeypatch.setattr(os, name, getattr(os, name))  # put back what the stage replaces
     with pytest.raises(StoreError, match="no room"):
         run(start(bench), task_of(bench))
 

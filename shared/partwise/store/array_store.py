@@ -81,10 +81,15 @@ class ArrayStore(Protocol):
         ...
 
     def stage(self, key: str, arrays: Mapping[str, np.ndarray]) -> None:
-        """Put named arrays into staging as one safetensors object, replacing what was there."""
+        """Put named arrays into staging as one object, replacing what was there.
+
+        It outlasts this process but perhaps not this machine: what it holds can be computed again.
+        """
         ...
 
-    def read_staged(self, key: str) -> Mapping[str, np.ndarray]: ...
+    def read_staged(self, key: str) -> Mapping[str, np.ndarray]:
+        """What was staged; `StoreError` if the object is not as it was written."""
+        ...
 
     def staged_keys(self, prefix: str = "") -> Sequence[str]:
         """Keys in staging, of a folder if given, sorted."""

@@ -1,18 +1,18 @@
 """Whole objects under keys, on a local folder or any fsspec file system: written atomically, listed, deleted.
 
-A local object is written beside, synced and renamed, so a crash or a full disk leaves the previous state. Object stores
-replace whole objects by themselves.
+A local object is written beside, synced and renamed, so a crash or a full disk leaves the previous state. What can be
+made again is not synced: that would take longer than many a stage. Object stores replace whole objects by themselves.
 """
 
 import errno
 import os
 import shutil
 import uuid
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, BinaryIO, Protocol
 
 from partwise.errors import NotFoundError, StoreError
 
@@ -23,6 +23,10 @@ class Objects(Protocol):
     """Keys are safe (`checked_key`) when they get here."""
 
     def put(self, key: str, data: bytes) -> None: ...
+
+    def put_unsynced(self, key: str, data: bytes) -> None:
+        """As `put`, but whole only as long as the machine stays up: afterwards it may be gone or damaged."""
+        ...
 
     def get(self, key: str) -> bytes: ...
 
@@ -52,21 +56,29 @@ class LocalObjects:
         self.root = root
 
     def put(self, key: str, data: bytes) -> None:
+        with storing(f"{self.root}", key):
+            target = self._replace(key, data, _sync)
+            _sync_folder(target.parent)
+
+    def put_unsynced(self, key: str, data: bytes) -> None:
+        with storing(f"{self.root}", key):
+            self._replace(key, data)
+
+    def _replace(self, key: str, data: bytes, finish: Callable[[BinaryIO], None] | None = None) -> Path:
         target = self.root / key
         partial = self.root / _PARTIAL / uuid.uuid4().hex
-        with storing(f"{self.root}", key):
-            self._make_folder(partial.parent)
-            self._make_folder(target.parent)
-            try:
-                with partial.open("wb") as file:
-                    file.write(data)
-                    file.flush()
-                    os.fsync(file.fileno())
-                partial.replace(target)
-            except BaseException:
-                partial.unlink(missing_ok=True)
-                raise
-            _sync_folder(target.parent)
+        self._make_folder(partial.parent)
+        self._make_folder(target.parent)
+        try:
+            with partial.open("wb") as file:
+                file.write(data)
+                if finish is not None:
+                    finish(file)
+            partial.replace(target)
+        except BaseException:
+            partial.unlink(missing_ok=True)
+            raise
+        return target
 
     def _make_folder(self, folder: Path) -> None:
         """As mkdir -p, but durable: each new entry is synced in the folder that holds it."""
@@ -117,6 +129,11 @@ class LocalObjects:
         return len(old)
 
 
+def _sync(file: BinaryIO) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+
+
 def _sync_folder(folder: Path) -> None:
     descriptor = os.open(folder, os.O_RDONLY)
     try:
@@ -136,6 +153,9 @@ class RemoteObjects:
     def put(self, key: str, data: bytes) -> None:
         with storing(self._where, key):
             self._fs.pipe_file(self._path(key), data)
+
+    def put_unsynced(self, key: str, data: bytes) -> None:
+        self.put(key, data)
 
     def get(self, key: str) -> bytes:
         with storing(self._where, key):

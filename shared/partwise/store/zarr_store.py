@@ -1,6 +1,7 @@
 """`ZarrArrayStore`: the array store on a local folder or any fsspec URL."""
 
 import hashlib
+import zlib
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
@@ -9,7 +10,6 @@ from datetime import datetime, timedelta
 from threading import Lock
 
 import numpy as np
-from safetensors import SafetensorError
 from safetensors.numpy import load, save
 from zarr.abc.store import Store
 
@@ -21,6 +21,7 @@ from partwise.store.objects import Objects
 from partwise.store.zarr_blocks import CompleteStore, OpenBlock, combined_checksum, write_block
 
 _OPEN_BLOCKS = 16
+_CHECKSUM_BYTES = 4
 
 
 class ZarrArrayStore:
@@ -117,16 +118,15 @@ class ZarrArrayStore:
         plain = {
             name: np.array(array, order="C", dtype=array.dtype.newbyteorder("<")) for name, array in arrays.items()
         }
-        self._objects.put(_staged(key), save(plain))
+        data = save(plain)
+        self._objects.put_unsynced(_staged(key), data + _checksum(data))
 
     def read_staged(self, key: str) -> Mapping[str, np.ndarray]:
-        data = self._objects.get(_staged(key))
-        try:
-            return load(data)
-        except SafetensorError as error:
-            raise StoreError(
-                f"staged {key} must be a safetensors file but: {error}; describe its shape again"
-            ) from error
+        stored = memoryview(self._objects.get(_staged(key)))
+        data, checksum = stored[:-_CHECKSUM_BYTES], stored[-_CHECKSUM_BYTES:]
+        if checksum != _checksum(data):
+            raise StoreError(f"staged {key} must be as it was written but is damaged; preprocess its shape again")
+        return load(bytes(data))
 
     def staged_keys(self, prefix: str = "") -> Sequence[str]:
         folder = _staged(prefix) if prefix else STAGING
@@ -174,3 +174,8 @@ def _plain(key: str) -> str:
 
 def _staged(key: str) -> str:
     return checked_key(f"{STAGING}/{key}")
+
+
+def _checksum(data: bytes | memoryview) -> bytes:
+    """Of a staged object, which is not synced: a machine that went down may have kept some of its pages only."""
+    return zlib.crc32(data).to_bytes(_CHECKSUM_BYTES, "little")

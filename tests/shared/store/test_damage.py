@@ -3,6 +3,7 @@
 import errno
 import os
 import socket
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -71,12 +72,40 @@ def test_a_block_that_never_was_is_refused(store: ZarrArrayStore, address: Block
         store.read(address.name[:-1] + ("0" if address.name[-1] != "0" else "1"), 0, "labels")
 
 
-def test_damaged_staging_is_refused(store: ZarrArrayStore, root: Path) -> None:
-    store.stage("a", {"x": np.zeros(100)})
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda data: b"",
+        lambda data: data[:3],
+        lambda data: data[:-1],
+        lambda data: bytes(len(data)),
+        lambda data: data[:200] + bytes(64) + data[264:],
+    ],
+    ids=["empty", "shorter than its checksum", "cut off", "zeros", "a page that was never written"],
+)
+def test_damaged_staging_is_refused(store: ZarrArrayStore, root: Path, damage: Callable[[bytes], bytes]) -> None:
+    store.stage("a", {"x": np.ones(100)})
     file = root / "staging/a"
-    file.write_bytes(file.read_bytes()[:-1])
-    with pytest.raises(StoreError, match="safetensors"):
+    file.write_bytes(damage(file.read_bytes()))
+    with pytest.raises(StoreError, match="damaged; preprocess its shape again"):
         store.read_staged("a")
+
+
+def test_staging_does_not_wait_for_the_disk(store: ZarrArrayStore, monkeypatch: pytest.MonkeyPatch) -> None:
+    store.stage("folder/a", {"x": np.ones(100)})  # a new folder's entry is synced
+    monkeypatch.setattr(objects.os, "fsync", lambda _: _fail(errno.EIO))
+    store.stage("folder/b", {"x": np.ones(100)})
+    np.testing.assert_array_equal(store.read_staged("folder/b")["x"], np.ones(100))
+
+
+def test_a_full_disk_leaves_nothing_half_staged(
+    store: ZarrArrayStore, root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(objects.os, "replace", lambda *_: _fail(errno.ENOSPC))
+    with pytest.raises(StoreError, match="no room for staging/a; free some space"):
+        store.stage("a", {"x": np.ones(100)})
+    assert list(store.staged_keys()) == []
+    assert list((root / ".partial").iterdir()) == []
 
 
 def _fail(error_number: int) -> None:
