@@ -171,11 +171,13 @@ def labelled_shapes(
     *,
     leave_out_reviews: bool,
 ) -> Sequence[LabelRevision]:
-    heads = (
-        _heads(kinds)
-        .join_from(t.label_revision, t.shape, t.shape.c.id == t.label_revision.c.shape_id)
-        .where(t.shape.c.collection_id == collection_id, t.label_revision.c.shape_id > after)
-        .order_by(t.label_revision.c.shape_id)
+    heads = (  # grouped and ordered as shapes are indexed, so that a page costs a page, however many are labelled
+        select(func.max(t.label_revision.c.id))
+        .join_from(t.shape, t.label_revision, t.shape.c.id == t.label_revision.c.shape_id)
+        .where(t.label_revision.c.kind.in_([RevisionKind(kind).value for kind in kinds]))
+        .where(t.shape.c.collection_id == collection_id, t.shape.c.id > after)
+        .group_by(t.shape.c.id)
+        .order_by(t.shape.c.id)
         .limit(limit)
     )
     if leave_out_reviews:  # reviews are of newest labels, so an open one says enough about the shape
