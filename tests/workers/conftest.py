@@ -5,6 +5,7 @@ The workers get the stages by value, as they cannot import this module.
 
 import ctypes
 import errno
+import mmap
 import os
 import signal
 import sys
@@ -114,16 +115,26 @@ def read_address_zero() -> None:
     ctypes.string_at(0)
 
 
+def memory(n_bytes: int) -> mmap.mmap:
+    """Memory that is there at once: to touch it page by page takes long on a busy machine."""
+    return mmap.mmap(-1, n_bytes, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | mmap.MAP_POPULATE)
+
+
 def allocate_without_end() -> None:
     kept = []
     while True:
-        kept.append(np.ones(4_000_000))
+        kept.append(memory(32 * 1024**2))
+
+
+def swell() -> None:
+    threading.main_thread().kept = memory(250_000_000)  # as long as the process lives
 
 
 NATIVE: dict[str, Callable[[], object]] = {
     "hangs with the interpreter": hang_with_the_interpreter,
     "reads address zero": read_address_zero,
     "allocates without end": allocate_without_end,
+    "swells": swell,
     "aborts": os.abort,
     "exits": partial(os._exit, 7),
     "leaves": partial(sys.exit, 7),

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -186,6 +187,7 @@ class Result:
 
 STAGES = {
     "mesh": ("vertices", "faces"),
+    "remesh": ("vertices", "faces", "level_vertices", "level_faces", "level_sizes", "working_level"),
     "describe": (
         "shape_context",
         "shape_context_scale",
@@ -231,10 +233,11 @@ def require_undisturbed_result(path: Path, undisturbed: Mapping[str, Result]) ->
     visible_blocks(path)
     with open_workspace(path) as workspace:
         assert results(workspace) == undisturbed
-        shapes_in_blocks = [0, 0]
+        shapes_in_blocks: Counter[str] = Counter()
         for block in workspace.catalog.visible_blocks():
-            shapes_in_blocks[block.kind == "features"] += block.n_shapes
-        assert shapes_in_blocks == [N_SHAPES, N_SHAPES]  # each shape went into one block of each stage, once
+            shapes_in_blocks[block.kind] += block.n_shapes
+        # each shape went into one block of each stage, once
+        assert shapes_in_blocks == dict.fromkeys(("mesh", "remesh", "features"), N_SHAPES)
         assert list(workspace.arrays.staged_keys()) == []
 
 

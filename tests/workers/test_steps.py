@@ -15,6 +15,7 @@ SOURCES = {
     "stubborn.off": "second 0: hangs\nsecond 1: reads address zero",
     "hopeless.off": "second 0: refuses",
     "hungry.off": "first: allocates without end",
+    "swollen.off": "first: swells",
 }
 DEADLINE_S, MEMORY_GB = 8.0, 0.6
 
@@ -74,7 +75,13 @@ def test_restarts_are_told_with_what_ended_the_process(ran) -> None:
     assert kinds[FailureKind.DEADLINE] == 1
     assert kinds[FailureKind.CRASH] == 2
     assert kinds[FailureKind.MEMORY] == 1
-    assert kinds[None] == 3  # recycled after each shape that it survived
+    assert kinds[None] == 5  # recycled after each shape that it survived, and once for what it kept
+
+
+def test_a_shape_whose_process_keeps_too_much_memory_goes_on_in_another(ran) -> None:
+    attempts = [ran[0].done(stage)["swollen.off"].attempts for stage in ("first", "second")]
+    assert attempts == [1, 1]
+    assert len(list(ran[0].log.glob("first-swollen.off.*"))) == 1
 
 
 def test_shapes_in_flight_end_at_none(ran) -> None:
