@@ -64,11 +64,15 @@ class Remeshing:
 
 @dataclass(frozen=True, slots=True)
 class DemoReport:
-    """Accuracies of the shapes that nobody confirmed, in order of rank, the least certain first."""
+    """Accuracies of the shapes that nobody confirmed, in order of rank, the least certain first.
+
+    n_unjudged : of those, that have no accuracy because their ground truth did not come to the working mesh whole.
+    """
 
     request: DemoRequest
     n_described: int
     remeshing: Remeshing
+    n_unjudged: int
     predicted: tuple[ShapeAccuracy, ...]
     refined: tuple[ShapeAccuracy, ...]
     model_version: int
@@ -112,8 +116,8 @@ def run_demo(out: Path, request: DemoRequest) -> DemoReport:
         watch.lap("init")
         ingest_folder(workspace, collection, shapes)
         watch.lap("ingest")
-        with shape_progress("preprocess") as on_run:
-            described = preprocess(workspace, collection, on_run)
+        with run_progress("preprocess") as tally:
+            described = preprocess(workspace, collection, tally.on_progress, tally.on_event)
         watch.lap("preprocess")
         import_labels(workspace, collection, shapes, RevisionKind.REFERENCE, "simulation")
         confirmed = _confirm_first_shapes(workspace, collection, request)
@@ -204,6 +208,7 @@ def _learn_and_report(
         request,
         n_described,
         remeshing_of(workspace, collection),
+        len(ranked) - len(refined),
         predicted,
         refined,
         model.version,

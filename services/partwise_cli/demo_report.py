@@ -28,6 +28,7 @@ def print_report(report: DemoReport) -> None:
     times = ", ".join(f"{step} {seconds:.0f} s" for step, seconds in report.seconds.items())
     lines = {
         "Remeshing": _remeshing(report.remeshing),
+        "Not judged": f"{counted(report.n_unjudged, 'shape')} whose ground truth did not come to the new mesh whole",
         "Time": f"{sum(report.seconds.values()):.0f} s: {times}",
         "Shapes": str(report.shapes),
         "Workspace": str(report.workspace),

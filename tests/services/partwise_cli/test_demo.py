@@ -26,6 +26,7 @@ def report(tmp_path: Path) -> DemoReport:
         request=DemoRequest("mugs", 10, 2, 1, 50),
         n_described=10,
         remeshing=Remeshing(7, 2, 1, 3.14),
+        n_unjudged=1,
         predicted=_accuracies(predicted),
         refined=_accuracies([value + 0.1 for value in predicted]),
         model_version=1,
@@ -75,6 +76,7 @@ def test_the_report_shows_figures_and_where_files_are(report: DemoReport, capsys
     (row,) = [line for line in out.splitlines() if line.startswith("│ all")]
     assert [cell.strip() for cell in row.strip("│").split("│")] == ["all", "50.0%", "60.0%", "25.0%", "30.0%"]
     assert "3 s: simulate 1 s, train 2 s" in out
+    assert "1 shape whose ground truth did not come to the new mesh whole" in out
     assert "7 shapes taken as they are, 2 soups remeshed at a median of 3.1 core-seconds, 1 could not be" in out
     for path in (report.shapes, report.workspace, report.exported, report.picture):
         assert str(path) in out
