@@ -116,8 +116,8 @@ def run_demo(out: Path, request: DemoRequest) -> DemoReport:
         watch.lap("init")
         ingest_folder(workspace, collection, shapes)
         watch.lap("ingest")
-        with run_progress("preprocess") as tally:
-            described = preprocess(workspace, collection, tally.on_progress, tally.on_event)
+        with shape_progress("preprocess") as on_run:
+            described = preprocess(workspace, collection, on_run)
         watch.lap("preprocess")
         import_labels(workspace, collection, shapes, RevisionKind.REFERENCE, "simulation")
         confirmed = _confirm_first_shapes(workspace, collection, request)
