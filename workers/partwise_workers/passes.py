@@ -1,4 +1,7 @@
-"""The passes over a collection: preprocess, evaluate, refine. Each plans what is missing and runs it on Ray."""
+"""The passes over a collection: preprocess, evaluate, refine. Each plans what is missing and runs it on Ray.
+
+What happens is counted in Ray's metrics, and told to `on_event`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,6 +12,8 @@ from partwise.store.records import Collection, MeshRole, Model, NewMesh, NewScor
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected
+from partwise_workers.events import OnEvent, RunEvent, ignore_events
+from partwise_workers.metrics import RunMetrics
 from partwise_workers.model_store import ModelReference
 from partwise_workers.plan import description_stages, plan_tasks
 from partwise_workers.publishing import AlsoPublish, Published, nothing_else
@@ -27,20 +32,24 @@ MESH_ROLES = {mesh_stage.NAME: MeshRole.ORIGINAL, remesh_stage.NAME: MeshRole.WO
 """What the mesh that a stage made is to its shape."""
 
 
-def preprocess(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
-    """Reads, checks, remeshes and describes every shape that is not yet described as the configuration and the collection say.
+def preprocess(
+    workspace: Workspace, collection: Collection, on_progress: OnRunProgress, on_event: OnEvent = ignore_events
+) -> RunProgress:
+    """Reads, checks, remeshes and describes every shape that is not yet described as it is configured to be.
 
     Raises
     ------
     StoreError : a store is full or cannot be reached; what is finished is kept for the next run. So do all passes.
     WorkerError : Ray or its processes cannot be started. So do all passes.
     """
-    result = _run(workspace, collection, description_stages(workspace, collection), (), on_progress, _meshes)
+    result = _run(workspace, collection, description_stages(workspace, collection), (), on_progress, on_event, _meshes)
     move_labels(workspace, collection, on_progress)
     return result
 
 
-def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
+def evaluate(
+    workspace: Workspace, collection: Collection, on_progress: OnRunProgress, on_event: OnEvent = ignore_events
+) -> RunProgress:
     """Lets the newest model predict and score every described shape that it has not seen.
 
     Raises
@@ -55,10 +64,14 @@ def evaluate(workspace: Workspace, collection: Collection, on_progress: OnRunPro
             scores=tuple(NewScore(shape_id, model.id, name, result.summary[name]) for name in evaluate_stage.SCORES)
         )
 
-    return _run(workspace, collection, (stage,), description_stages(workspace, collection), on_progress, scores)
+    return _run(
+        workspace, collection, (stage,), description_stages(workspace, collection), on_progress, on_event, scores
+    )
 
 
-def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> RunProgress:
+def refine(
+    workspace: Workspace, collection: Collection, on_progress: OnRunProgress, on_event: OnEvent = ignore_events
+) -> RunProgress:
     """Graph cut on the newest model's probabilities, with the smoothness that its training chose.
 
     Raises
@@ -68,7 +81,7 @@ def refine(workspace: Workspace, collection: Collection, on_progress: OnRunProgr
     model = newest_model(workspace, collection)
     stage = RefineStage(refinement_parameters(workspace, model), model.version)
     earlier = (*description_stages(workspace, collection), EvaluateStage(ModelReference.of(model)))
-    return _run(workspace, collection, (stage,), earlier, on_progress, nothing_else)
+    return _run(workspace, collection, (stage,), earlier, on_progress, on_event, nothing_else)
 
 
 def newest_model(workspace: Workspace, collection: Collection) -> Model:
@@ -99,6 +112,7 @@ def _run(
     stages: Sequence[Stage],
     earlier: Sequence[Stage],
     on_progress: OnRunProgress,
+    on_event: OnEvent,
     also_publish: AlsoPublish,
 ) -> RunProgress:
     n_total = sum(1 for _ in plan_tasks(workspace, collection, stages, earlier))
@@ -106,9 +120,14 @@ def _run(
     result = RunProgress(0, 0, 0)
     if n_total:
         with connected():
-            runner = StageRunner(
-                workspace.catalog, workspace.arrays, workspace.array_url, stages, workspace.config.workers, also_publish
-            )
+            metrics = RunMetrics()
+
+            def tell(event: RunEvent) -> None:
+                metrics(event)
+                on_event(event)
+
+            ws = workspace
+            runner = StageRunner(ws.catalog, ws.arrays, ws.array_url, stages, ws.config.workers, also_publish, tell)
             result = runner.run(plan_tasks(workspace, collection, stages, earlier), n_total, on_progress)
     sweep_staging(workspace, collection, stages, earlier)
     return result

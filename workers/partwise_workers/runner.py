@@ -32,6 +32,9 @@ POLL_S = 1.0
 MOURNING_POLL_S = 0.2
 """How often last words are looked for: they come through the array store, which announces nothing."""
 
+UNRECORDED = {"enable_task_events": False}
+"""Ray's own record of every call, which would outgrow all that the driver keeps; the catalog has what matters."""
+
 PATIENCE_S = 60.0
 """Seconds without any process at work after which the log says what is waited for."""
 
@@ -145,9 +148,9 @@ class StageRunner:
 
     def _new_worker(self, actor_id: str, n_threads: int) -> Actor:
         environment = {"env_vars": thread_environment(n_threads)}
-        options = StageWorker.options(num_cpus=n_threads, max_restarts=0, runtime_env=environment)
+        options = StageWorker.options(num_cpus=n_threads, max_restarts=0, runtime_env=environment, **UNRECORDED)
         return options.remote(self._array_url, self._stages, actor_id, self._rules.limits)
 
     def _new_packer(self) -> Actor:
         environment = {"env_vars": thread_environment(1)}
-        return Packer.options(num_cpus=0, max_restarts=0, runtime_env=environment).remote(self._array_url)
+        return Packer.options(num_cpus=0, max_restarts=0, runtime_env=environment, **UNRECORDED).remote(self._array_url)

@@ -1,0 +1,86 @@
+"""What a run tells arrives where Prometheus looks for it."""
+
+import re
+import threading
+import urllib.request
+from collections.abc import Callable, Iterator
+
+import pytest
+import ray
+
+from partwise.store.records import FailureKind
+from partwise_workers.events import ActorRestarted, InFlight, StageDone, StageFailed
+from partwise_workers.metrics import RunMetrics
+
+POLL_S, PATIENCE_S = 0.5, 60.0
+EVENTS = (
+    InFlight(3),
+    StageDone("alpha", 0.02),
+    StageDone("alpha", 2.0),
+    StageDone("beta", 0.02),
+    StageFailed("alpha", FailureKind.MEMORY),
+    ActorRestarted(FailureKind.MEMORY),
+    ActorRestarted(None),
+    InFlight(2),
+)
+SAMPLE = re.compile(r"^ray_(partwise_\w+)\{(.*)\} (\S+)$", re.MULTILINE)
+LABEL = re.compile(r'(\w+)="([^"]*)"')
+Value = Callable[..., float]
+
+
+@pytest.fixture(scope="module")
+def samples(local_ray: None) -> Iterator[list[tuple[str, dict[str, str], float]]]:
+    """Name, labels and value of every sample that a node exports of ours, once they have arrived."""
+    metrics = RunMetrics()
+    for event in EVENTS:
+        metrics(event)
+    (node,) = ray.nodes()
+    url = f"http://{node['NodeManagerAddress']}:{node['MetricsExportPort']}/metrics"
+    for _ in range(int(PATIENCE_S / POLL_S)):
+        text = urllib.request.urlopen(url, timeout=PATIENCE_S).read().decode()
+        found = [(name, dict(LABEL.findall(labels)), float(value)) for name, labels, value in SAMPLE.findall(text)]
+        if any(labels.get("stage") == "alpha" for _, labels, _ in found):
+            yield found
+            return
+        threading.Event().wait(POLL_S)
+    pytest.fail(f"no metric has arrived at {url}")
+
+
+@pytest.fixture
+def value(samples: list[tuple[str, dict[str, str], float]]) -> Value:
+    """The value of the one sample of a name with these labels."""
+
+    def value(name: str, **labels: str) -> float:
+        (found,) = [v for n, has, v in samples if n == name and labels.items() <= has.items()]
+        return found
+
+    return value
+
+
+def test_shapes_done_are_counted_by_stage(value: Value) -> None:
+    assert value("partwise_shapes_done_total", stage="alpha") == 2
+    assert value("partwise_shapes_done_total", stage="beta") == 1
+
+
+def test_shapes_failed_are_counted_by_stage_and_kind(value: Value) -> None:
+    assert value("partwise_shapes_failed_total", stage="alpha", kind="memory") == 1
+
+
+def test_seconds_are_spread_over_bins(value: Value) -> None:
+    assert value("partwise_stage_seconds_bucket", stage="alpha", le="0.03") == 1
+    assert value("partwise_stage_seconds_bucket", stage="alpha", le="3.0") == 2
+    assert value("partwise_stage_seconds_sum", stage="alpha") == pytest.approx(2.02)
+
+
+def test_what_is_in_flight_is_what_was_told_last(value: Value) -> None:
+    assert value("partwise_shapes_in_flight") == 2
+
+
+def test_restarts_are_counted_by_what_ended_the_process(value: Value) -> None:
+    assert value("partwise_actor_restarts_total", kind="memory") == 1
+    assert value("partwise_actor_restarts_total", kind="recycled") == 1
+
+
+def test_nothing_is_labelled_by_shape_run_or_person(samples: list[tuple[str, dict[str, str], float]]) -> None:
+    ours = {label for _, labels, _ in samples for label in labels if label[0].islower() and "otel" not in label}
+    assert ours == {"stage", "kind", "le"}
