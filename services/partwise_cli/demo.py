@@ -22,8 +22,9 @@ from partwise.workspace.segmentations import REMESH, Segmentation, reference_lab
 from partwise.workspace.shapes import pages_of_shapes, shape_mesh
 from partwise.workspace.workspace import INITIAL_CONFIG, Workspace, init_workspace, open_workspace
 from partwise_cli.pictures import write_worst_shapes
+from partwise_cli.run_view import run_progress
 from partwise_cli.simulated import SimulationRequest, write_collection
-from partwise_cli.terminal import progress, shape_progress
+from partwise_cli.terminal import progress
 from partwise_workers.cluster import connected
 from partwise_workers.passes import evaluate, preprocess, refine
 from partwise_workers.training import train_collection
@@ -116,8 +117,8 @@ def run_demo(out: Path, request: DemoRequest) -> DemoReport:
         watch.lap("init")
         ingest_folder(workspace, collection, shapes)
         watch.lap("ingest")
-        with shape_progress("preprocess") as on_run:
-            described = preprocess(workspace, collection, on_run)
+        with run_progress("preprocess") as tally:
+            described = preprocess(workspace, collection, tally.on_progress, tally.on_event)
         watch.lap("preprocess")
         import_labels(workspace, collection, shapes, RevisionKind.REFERENCE, "simulation")
         confirmed = _confirm_first_shapes(workspace, collection, request)
@@ -184,8 +185,8 @@ def _learn_and_report(
         model = train_collection(workspace, collection, on_progress)
     watch.lap("train")
     for name, run in (("evaluate", evaluate), ("refine", refine)):
-        with shape_progress(name) as on_run:
-            run(workspace, collection, on_run)
+        with run_progress(name) as tally:
+            run(workspace, collection, tally.on_progress, tally.on_event)
         watch.lap(name)
     exported = out / "labels"
     export_labels(workspace, collection, Segmentation.REFINED, ExportFormat.PLY, exported)

@@ -9,6 +9,7 @@ import typer
 
 from partwise_cli.arguments import CollectionOption, JsonOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
+from partwise_cli.run_view import run_progress
 from partwise_cli.terminal import counted, print_json, print_table, shape_progress, warning_lines
 
 if TYPE_CHECKING:
@@ -88,8 +89,8 @@ def ingest(
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
-    with open_workspace(ws) as workspace:
-        report = ingest_folder(workspace, find_collection(workspace, collection), folder)
+    with open_workspace(ws) as workspace, shape_progress("ingest") as on_progress:
+        report = ingest_folder(workspace, find_collection(workspace, collection), folder, on_progress)
     warning_lines([file.reason for file in report.refused])
     typer.echo(
         f"{counted(report.n_added, 'shape')} added, {report.n_unchanged:,} unchanged, {report.n_changed:,} changed, "
@@ -108,8 +109,8 @@ def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> No
 
     with open_workspace(ws) as workspace:
         found = find_collection(workspace, collection)
-        with shape_progress("preprocess") as on_progress:
-            result = run(workspace, found, on_progress)
+        with run_progress("preprocess") as tally:
+            result = run(workspace, found, tally.on_progress, tally.on_event)
         state = collection_status(workspace, found, MAX_REASONS)
     if result.n_failed:
         _report_failures(state)

@@ -4,7 +4,8 @@ import typer
 
 from partwise_cli.arguments import CollectionOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
-from partwise_cli.terminal import counted, progress, shape_progress
+from partwise_cli.run_view import run_progress
+from partwise_cli.terminal import counted, progress
 
 
 def register(app: typer.Typer) -> None:
@@ -31,8 +32,8 @@ def evaluate(ws: WorkspaceArgument, collection: CollectionOption = None) -> None
     from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import evaluate as run
 
-    with open_workspace(ws) as workspace, shape_progress("evaluate") as on_progress:
-        result = run(workspace, find_collection(workspace, collection), on_progress)
+    with open_workspace(ws) as workspace, run_progress("evaluate") as tally:
+        result = run(workspace, find_collection(workspace, collection), tally.on_progress, tally.on_event)
     _finish("evaluated", result.n_done, result.n_failed)
 
 
@@ -42,8 +43,8 @@ def refine(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
     from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import refine as run
 
-    with open_workspace(ws) as workspace, shape_progress("refine") as on_progress:
-        result = run(workspace, find_collection(workspace, collection), on_progress)
+    with open_workspace(ws) as workspace, run_progress("refine") as tally:
+        result = run(workspace, find_collection(workspace, collection), tally.on_progress, tally.on_event)
     _finish("refined", result.n_done, result.n_failed)
 
 

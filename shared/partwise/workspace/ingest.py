@@ -9,6 +9,7 @@ from pathlib import Path
 from partwise.errors import FileFormatError, NotFoundError
 from partwise.io.read import MESH_SUFFIXES, read_bytes
 from partwise.store.records import Collection, IngestOutcome, NewShape
+from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
 
 BATCH = 256
@@ -38,10 +39,13 @@ def source_object(source_hash: str, source_suffix: str) -> str:
     return f"sources/{source_hash[:2]}/{source_hash}{source_suffix}"
 
 
-def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) -> IngestReport:
+def ingest_folder(
+    workspace: Workspace, collection: Collection, folder: Path, on_progress: OnRunProgress = lambda _: None
+) -> IngestReport:
     """Ingests every mesh file below the folder, by its relative path. Safe to repeat: what is known is left alone.
 
     A file that cannot be read, is empty, or would change under a confirmed shape is refused; the rest goes on.
+    Progress is told after each file that was copied; a file counts as failed if it was refused.
 
     Raises
     ------
@@ -51,7 +55,9 @@ def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) ->
         raise NotFoundError(f"ingest needs a folder but {folder} is not one; check the path")
     counts = dict.fromkeys(IngestOutcome, 0)
     refused: list[RefusedFile] = []
-    for paths in _batches(_outside(mesh_files(folder), workspace.array_url)):
+    files = list(_outside(mesh_files(folder), workspace.array_url))
+    n_seen = 0
+    for paths in _batches(iter(files)):
         new_shapes: list[NewShape] = []
         for path in paths:
             key = path.relative_to(folder).as_posix()
@@ -59,6 +65,8 @@ def ingest_folder(workspace: Workspace, collection: Collection, folder: Path) ->
                 new_shapes.append(_copy(workspace, path, key))
             except FileFormatError as error:
                 refused.append(RefusedFile(key, str(error)))
+            n_seen += 1
+            on_progress(RunProgress(n_seen - len(refused), len(refused), len(files)))
         for ingested in workspace.catalog.add_shapes(collection.id, new_shapes):
             counts[ingested.outcome] += 1
             if ingested.outcome is IngestOutcome.CONFLICT:

@@ -131,7 +131,7 @@ def test_a_second_collection_must_be_named(invoke, empty: Path, tmp_path: Path, 
 def test_preprocess_says_how_it_went(
     invoke, described: Path, monkeypatch: pytest.MonkeyPatch, progress: RunProgress, line: str, code: int
 ) -> None:
-    monkeypatch.setattr(passes, "preprocess", lambda workspace, collection, on_progress: progress)
+    monkeypatch.setattr(passes, "preprocess", lambda *_: progress)
     result = invoke("preprocess", described)
     assert (result.stdout, result.exit_code) == (line, code)
 

@@ -16,6 +16,7 @@ from partwise.testing.workspaces import publish_meshes
 from partwise.workspace import ingest as module
 from partwise.workspace.ingest import IngestReport, ingest_folder, mesh_files, source_object
 from partwise.workspace.labelling import commit_labels
+from partwise.workspace.progress import RunProgress
 from partwise.workspace.workspace import Workspace
 
 
@@ -70,6 +71,7 @@ def test_a_labelled_shape_keeps_its_file(
     shape = workspace.catalog.shape_by_key(collection.id, "a.off")
     publish_meshes(workspace, {shape.id: tetrahedron})
     commit_labels(workspace, collection, shape, np.array([1, 1, 1, 2], dtype=np.uint16), RevisionKind.HUMAN, "ann")
+    shape = workspace.catalog.shape(shape.id)
     (folder / "a.off").write_bytes(b"something else")
     report = ingest_folder(workspace, collection, folder)
     assert (report.n_unchanged, report.n_changed) == (1, 0)
@@ -173,3 +175,12 @@ def test_a_full_store_leaves_no_row_without_its_file(
     assert _keys(workspace, collection) == []
     assert workspace.arrays.list("sources") == []
     assert ingest_folder(workspace, collection, folder).n_added == 2
+
+
+def test_progress_is_told_after_each_file(workspace: Workspace, collection: Collection, folder: Path) -> None:
+    (folder / "empty.off").touch()
+    told: list[RunProgress] = []
+    report = ingest_folder(workspace, collection, folder, told.append)
+    n_files = report.n_added + 1
+    assert [run.n_done + run.n_failed for run in told] == list(range(1, n_files + 1))
+    assert told[-1] == RunProgress(report.n_added, 1, n_files)
