@@ -29,7 +29,7 @@ def import_(
         Path,
         typer.Argument(
             help="Folder of <shape>_labels.txt or <shape>.seg: of the files' own faces, moved to the working meshes. "
-            "Of the working meshes' faces where their number differs and fits.",
+            "Of the working meshes' faces where their number says so; of the files' where both are as many.",
             show_default=False,
         ),
     ],
