@@ -89,6 +89,11 @@ def test_a_stage_that_refuses_a_shape_fails_it(make_bench) -> None:
     assert (failure.kind, failure.detail) == (FailureKind.ERROR, {})
 
 
+def test_a_stage_that_would_leave_the_process_fails_the_shape_only(make_bench) -> None:
+    bench = make_bench({"a.off": "first: leaves"})
+    assert failure_of(start(bench), task_of(bench)).reason == "SystemExit: 7"
+
+
 def test_arrays_that_do_not_fit_the_block_fail_the_shape(make_bench) -> None:
     bench = make_bench({"a.off": ""}).with_stages(
         first={"block_kind": BlockKind("fake", (Quantity("values", Domain.FACE, "float32"),))}

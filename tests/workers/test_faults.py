@@ -25,8 +25,8 @@ BAD = {
     "reads address zero": "crash",
     "aborts": "crash",
     "exits": "crash",
-    "leaves": "crash",
     "dies": "crash",
+    "leaves": "error",
     "crashes": "error",
     "refuses": "error",
 }

@@ -124,10 +124,8 @@ class _StageWorker:
         self._begin(call, None)
         try:
             made = self._result_of(call, self._inputs)
-        except Exception:  # not SystemExit, which ends this process: then the last words are wanted
+        finally:
             self._watch.idle()
-            raise
-        self._watch.idle()
         if isinstance(made, StageFailure) or call.stage == call.task.stage_keys[-1][0]:
             self._inputs = None  # holds arrays
         else:
@@ -143,7 +141,7 @@ class _StageWorker:
         result: Mapping[str, np.ndarray] | StageFailure
         try:
             result = self._make(call, inputs, started)
-        except Exception as error:  # noqa: BLE001 - the task's edge: one bad mesh never costs the run
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - the task's edge: one bad mesh never costs the run
             if isinstance(error, StoreError):
                 self._require_store()
             result = _failure(call, error, time.perf_counter() - started)
@@ -192,7 +190,7 @@ def _staged_result(call: StageCall, made: Mapping[str, np.ndarray]) -> StagedRes
     return StagedResult(call.stage, call.key, str(call.name), n_bytes, account["seconds"], account["summary"])
 
 
-def _failure(call: StageCall, error: Exception, seconds: float) -> StageFailure:
+def _failure(call: StageCall, error: BaseException, seconds: float) -> StageFailure:
     kind = FailureKind.MEMORY if isinstance(error, MemoryError) else FailureKind.ERROR
     if isinstance(error, PartwiseError):
         known = error.detail if isinstance(error, StageRefusedError) else {}
