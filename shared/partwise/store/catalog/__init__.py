@@ -1,0 +1,31 @@
+"""`Catalog`: everything a person made, and what the machine has done so far, as rows.
+
+Each method is one transaction: when it returns, it is committed. Lists are pages in order of a key: pass the last key
+of one page as `after` to get the next; an empty page is the end. Methods raise `NotFoundError` for an id or a name that
+is not there and `StoreError` when the database cannot be reached or written, beside what they name themselves.
+"""
+
+from typing import Protocol
+
+from partwise.store.catalog.collections import AuditCatalog, CollectionCatalog
+from partwise.store.catalog.labels import SHOWN_KINDS, LabelCatalog
+from partwise.store.catalog.models import ModelCatalog
+from partwise.store.catalog.shapes import ShapeCatalog
+from partwise.store.catalog.stages import StageCatalog
+
+__all__ = [
+    "SHOWN_KINDS",
+    "AuditCatalog",
+    "Catalog",
+    "CollectionCatalog",
+    "LabelCatalog",
+    "ModelCatalog",
+    "ShapeCatalog",
+    "StageCatalog",
+]
+
+
+class Catalog(CollectionCatalog, ShapeCatalog, StageCatalog, LabelCatalog, ModelCatalog, AuditCatalog, Protocol):
+    """The whole catalog. Depend on the smallest of its parts that does."""
+
+    def close(self) -> None: ...

@@ -1,0 +1,88 @@
+"""Label revisions and their reviews."""
+
+from collections.abc import Collection as SizedIterable
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import UInt16
+
+from partwise.store.records import LabelRevision, NewRevision, RevisionKind
+from partwise.store.reviews import NewReview, Review
+
+SHOWN_KINDS = (RevisionKind.HUMAN, RevisionKind.IMPORTED)
+"""Kinds of revision that may be shown and trained on."""
+
+
+class LabelCatalog(Protocol):
+    """Label revisions, which nothing ever changes or deletes."""
+
+    def add_revision(self, revision: NewRevision, review: NewReview | None = None) -> LabelRevision:
+        """Commit labels, and with them an audit entry and, if given, a review that keeps them out of training.
+
+        Human or imported labels resolve the open reviews of those whose place they take. Moved labels take over the
+        reviews that have nothing to do with the move.
+
+        Raises `LabelError` if the mesh is not one of the shape's, there is not one label per face, an id is not in the
+        schema version named, that version does not exist, the parent is not a revision of the same shape, or labels
+        that are never shown are to be reviewed. Raises `ConflictError` for moved labels whose parent is not, or no
+        longer, the newest revision of the shape.
+        """
+        ...
+
+    def revision(self, revision_id: int) -> LabelRevision: ...
+
+    def revisions(self, shape_id: int) -> Sequence[LabelRevision]:
+        """Every revision of a shape, oldest first."""
+        ...
+
+    def labels(self, revision_id: int) -> UInt16[np.ndarray, " m"]:
+        """The labels of a revision, checked against their checksum."""
+        ...
+
+    def head_revision(self, shape_id: int, kinds: Sequence[RevisionKind] = SHOWN_KINDS) -> LabelRevision | None:
+        """The newest revision of these kinds."""
+        ...
+
+    def head_revisions(
+        self, shape_ids: SizedIterable[int], kinds: Sequence[RevisionKind] = SHOWN_KINDS
+    ) -> Mapping[int, LabelRevision]:
+        """The newest revision of these kinds for each shape; shapes without one are left out."""
+        ...
+
+    def labelled_shapes(
+        self,
+        collection_id: int,
+        *,
+        kinds: Sequence[RevisionKind] = SHOWN_KINDS,
+        after: int = 0,
+        limit: int = 1000,
+        leave_out_reviews: bool = False,
+    ) -> Sequence[LabelRevision]:
+        """A page of head revisions by shape id: every shape of the collection that has labels of these kinds.
+
+        `leave_out_reviews` leaves out shapes whose labels wait for someone to look at them.
+        """
+        ...
+
+    def add_review(self, revision_id: int, review: NewReview) -> Review:
+        """Have someone look at labels before they are trained on. An open review of the same reason stays the one.
+
+        Raises `ConflictError` unless the revision is the newest human or imported one, `LabelError` for reference ones.
+        """
+        ...
+
+    def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
+        """A page of the reviews that wait for someone, by review id."""
+        ...
+
+    def reviews(self, shape_id: int) -> Sequence[Review]:
+        """Every review of a shape, open or not, oldest first."""
+        ...
+
+    def accept_review(self, review_id: int, person_id: int) -> Review:
+        """Record that a person found the labels right as they are. `ConflictError` if the review is resolved already.
+
+        Labels that are not right are corrected by committing better ones, which resolves the review.
+        """
+        ...

@@ -1,0 +1,72 @@
+"""Label revisions and reviews."""
+
+from collections.abc import Collection as SizedIterable
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from jaxtyping import UInt16
+
+from partwise.store import records as r
+from partwise.store.catalog import SHOWN_KINDS
+from partwise.store.engine import reading, writing
+from partwise.store.reviews import NewReview, Review
+from partwise.store.sql import labels, reviews
+from partwise.store.sql_catalog.base import SqlBase
+
+
+class SqlLabelCatalog(SqlBase):
+    def add_revision(self, revision: r.NewRevision, review: NewReview | None = None) -> r.LabelRevision:
+        with writing(self._engine) as connection:
+            return labels.add_revision(connection, revision, review, self._clock())
+
+    def revision(self, revision_id: int) -> r.LabelRevision:
+        with reading(self._engine) as connection:
+            return labels.revision(connection, revision_id)
+
+    def revisions(self, shape_id: int) -> Sequence[r.LabelRevision]:
+        with reading(self._engine) as connection:
+            return labels.revisions(connection, shape_id)
+
+    def labels(self, revision_id: int) -> UInt16[np.ndarray, " m"]:
+        with reading(self._engine) as connection:
+            return labels.labels(connection, revision_id)
+
+    def head_revision(self, shape_id: int, kinds: Sequence[r.RevisionKind] = SHOWN_KINDS) -> r.LabelRevision | None:
+        with reading(self._engine) as connection:
+            return labels.head_revisions(connection, [shape_id], kinds).get(shape_id)
+
+    def head_revisions(
+        self, shape_ids: SizedIterable[int], kinds: Sequence[r.RevisionKind] = SHOWN_KINDS
+    ) -> Mapping[int, r.LabelRevision]:
+        with reading(self._engine) as connection:
+            return labels.head_revisions(connection, shape_ids, kinds)
+
+    def labelled_shapes(
+        self,
+        collection_id: int,
+        *,
+        kinds: Sequence[r.RevisionKind] = SHOWN_KINDS,
+        after: int = 0,
+        limit: int = 1000,
+        leave_out_reviews: bool = False,
+    ) -> Sequence[r.LabelRevision]:
+        with reading(self._engine) as connection:
+            return labels.labelled_shapes(
+                connection, collection_id, kinds, after, limit, leave_out_reviews=leave_out_reviews
+            )
+
+    def add_review(self, revision_id: int, review: NewReview) -> Review:
+        with writing(self._engine) as connection:
+            return reviews.add_review(connection, revision_id, review, self._clock())
+
+    def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
+        with reading(self._engine) as connection:
+            return reviews.open_reviews(connection, collection_id, after, limit)
+
+    def reviews(self, shape_id: int) -> Sequence[Review]:
+        with reading(self._engine) as connection:
+            return reviews.reviews(connection, shape_id)
+
+    def accept_review(self, review_id: int, person_id: int) -> Review:
+        with writing(self._engine) as connection:
+            return reviews.accept_review(connection, review_id, person_id, self._clock())
