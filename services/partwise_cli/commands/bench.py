@@ -1,8 +1,8 @@
-"""Benchmarks: `partwise bench loo` and `partwise bench describe`."""
+"""Benchmarks: `partwise bench loo`, `partwise bench describe` and `partwise bench toolbox`."""
 
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -91,6 +91,58 @@ def loo(
     means = (f"{getattr(summary, name):.2%}" for name in ACCURACIES)
     rows.append(("mean", "", *means, "", f"{summary.train_s:.0f}"))
     print_table(f"Leave one out: {category}, {preset}", columns, rows, tuple(range(1, len(columns))))
+
+
+@app.command()
+def toolbox(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder, or folder of folders, of <id>.off and <id>_labels.txt.", show_default=False)
+    ],
+    limit: Annotated[
+        int | None,
+        typer.Option(
+            help="Shapes a category, evenly spaced. Without: all for patches and boundaries, 2 for model, 3 for "
+            "annotator.",
+            min=1,
+            show_default=False,
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of all that is random.", min=0)] = 0,
+    only: Annotated[
+        str | None,
+        typer.Option(help="Some of patches,boundaries,model,annotator, with commas.", show_default=False),
+    ] = None,
+    target: Annotated[
+        list[float] | None,
+        typer.Option(
+            help="Share of area right that annotators work to; again for more. 0.95 and 0.97.", show_default=False
+        ),
+    ] = None,
+    predictions: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder with predicted/ and refined/ of [<category>/]<id>.seg to start from; simulated without.",
+            show_default=False,
+        ),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """What the annotator's tools give and save.  [dim]partwise bench toolbox lpsb --limit 2 --json[/dim]"""
+    from partwise_cli.bench.annotating import TARGETS
+    from partwise_cli.bench.toolbox import ToolboxRequest, parse_subjects, run_toolbox, toolbox_json
+    from partwise_cli.bench.toolbox_tables import print_measured
+
+    subjects, targets = parse_subjects(only), tuple(sorted(target)) if target else TARGETS
+    request = ToolboxRequest(folder, subjects, limit, seed, targets, predictions)
+    measured = []
+    with ExitStack() as bars:
+        for each in run_toolbox(request, lambda title: bars.enter_context(progress(title))):
+            measured.append(each)
+            bars.close()  # a bar must be gone before its tables come
+            if not as_json:
+                print_measured(each)
+    if as_json:
+        print_json(toolbox_json(request, measured))
 
 
 @contextmanager
