@@ -1,16 +1,21 @@
-"""Benchmarks: `partwise bench loo`, `partwise bench describe` and `partwise bench toolbox`."""
+"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox."""
 
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from partwise_cli.arguments import JsonOption
-from partwise_cli.terminal import print_json, print_table, progress, shape_progress, warning_lines
+from partwise_cli.run_view import run_progress
+from partwise_cli.terminal import counted, print_json, print_table, progress, shape_progress, warning_lines
+
+if TYPE_CHECKING:
+    from partwise_cli.bench.remeshing import RemeshOutcome
+    from partwise_cli.bench.scheduling import SchedulingCost
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode="rich")
 
@@ -91,6 +96,155 @@ def loo(
     means = (f"{getattr(summary, name):.2%}" for name in ACCURACIES)
     rows.append(("mean", "", *means, "", f"{summary.train_s:.0f}"))
     print_table(f"Leave one out: {category}, {preset}", columns, rows, tuple(range(1, len(columns))))
+
+
+@app.command()
+def remeshing(
+    folder: Annotated[Path, typer.Argument(help="Folder of mesh files.", show_default=False)],
+    levels: Annotated[
+        str, typer.Option(help="Face counts, descending. What one costs by itself takes a run with it alone.")
+    ] = "50000,20000,10000,5000",
+    deadline_s: Annotated[float, typer.Option(help="Seconds after which a shape is given up.", min=1)] = 600,
+    pictures: Annotated[
+        Path | None, typer.Option(help="Draw all before and after into this PNG file.", show_default=False)
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Remesh a folder.  [dim]partwise bench remeshing dirty/ --levels 10000[/dim]"""
+    from partwise.workspace.ingest import mesh_files
+    from partwise_cli.bench.remeshing import measure_remeshing, summarise, write_pictures
+
+    outcomes: list[RemeshOutcome] = []
+    n_files = sum(1 for _ in mesh_files(folder)) if folder.is_dir() else 0
+    with tempfile.TemporaryDirectory(prefix="partwise-bench-") as kept, progress("remesh") as on_progress:
+        for outcome in measure_remeshing(folder, _numbers(levels), deadline_s, Path(kept) if pictures else None):
+            outcomes.append(outcome)
+            on_progress(len(outcomes), n_files, outcome.file)
+            if as_json:
+                print_json(asdict(outcome))
+        if pictures is not None:
+            write_pictures(outcomes, Path(kept), pictures)
+    summary = summarise(outcomes)
+    if as_json:
+        print_json(asdict(summary))
+        return
+    _print_remeshing(outcomes)
+    title = f"{summary.n_accepted} of {summary.n_shapes} accepted, {summary.n_as_is} of them as they are; medians"
+    rows = [
+        (f"{n:,} faces", f"{reached} reached", f"{summary.core_s_to[n]:.1f} core-s" if n in summary.core_s_to else "")
+        for n, reached in summary.n_reached.items()
+    ]
+    print_table(title, ("level", "shapes", "attempts and level"), rows, (1, 2))
+    warning_lines(summary.refused)
+
+
+def _print_remeshing(outcomes: "list[RemeshOutcome]") -> None:
+    rows = [
+        (
+            outcome.file,
+            f"{outcome.n_faces:,}",
+            str(len(outcome.attempts) - 1),
+            outcome.attempts[-1].partition(":")[0] if outcome.refused is None else "refused",
+            "" if outcome.distance is None else f"{outcome.distance:.3f}",
+            " ".join("–" if level.reached is None else f"{level.reached:,}" for level in outcome.levels),
+            f"{outcome.core_s:.1f}",
+        )
+        for outcome in outcomes
+    ]
+    columns = ("shape", "faces", "attempts", "by", "distance", "levels", "core-s")
+    print_table("Remeshing", columns, rows, (1, 2, 4, 6))
+
+
+@app.command()
+def calibration(
+    per_category: Annotated[int, typer.Option(help="Shapes of each category.", min=2)] = 5,
+    faces: Annotated[int, typer.Option(help="Of the working meshes.", min=100)] = 10_000,
+    seed: Annotated[int, typer.Option(help="Of the simulated collections.", min=0)] = 11,
+) -> None:
+    """The threshold's experiment.  [dim]partwise bench calibration[/dim]"""
+    from partwise.remesh.calibration import table
+    from partwise_cli.bench.calibrating import calibrated
+
+    found = calibrated(per_category, faces, seed)
+    typer.echo(table(found))
+    typer.echo(f"good pairs end at {found.greatest_good:.3f}, wrong pairs begin at {found.least_wrong:.3f}")
+    typer.echo(f"suggested max_distance: {found.suggested_distance:.3f}")
+    warning_lines([f"not remeshed: {name}" for name in found.not_remeshed])
+
+
+@app.command()
+def scheduling(
+    shapes: Annotated[int, typer.Option(help="Rows in the catalog, without files.", min=2)] = 10_000,
+    actors: Annotated[int, typer.Option(help="Processes that do nothing.", min=1)] = 2,
+    stages: Annotated[int, typer.Option(help="Stages of the chain.", min=1)] = 1,
+    as_json: JsonOption = False,
+) -> None:
+    """What a shape costs besides its work.  [dim]partwise bench scheduling --shapes 300000[/dim]"""
+    from partwise_cli.bench.scheduling import measure_scheduling
+
+    with tempfile.TemporaryDirectory(prefix="partwise-bench-") as folder, run_progress("no-op") as tally:
+        cost = measure_scheduling(Path(folder) / "workspace", shapes, actors, stages, tally.on_progress)
+    if as_json:
+        print_json(asdict(cost))
+    else:
+        _print_scheduling(cost)
+
+
+def _print_scheduling(cost: "SchedulingCost") -> None:
+    title = f"{counted(cost.n_shapes, 'shape')}, {counted(cost.n_stages, 'stage')}: milliseconds a shape"
+    rows = [("all of it", f"{cost.wall_ms:.3f}", f"{cost.core_ms['total']:.3f}")]
+    rows += [(role, "", f"{ms:.3f}") for role, ms in cost.core_ms.items() if role != "total"]
+    rows += [
+        (f"driver: {part}", f"{cost.parts_wall_ms[part]:.3f}" if part in cost.parts_wall_ms else "", f"{ms:.3f}")
+        for part, ms in cost.parts_core_ms.items()
+    ]
+    rows += [(f"once: {step}", f"{ms:.3f}", "") for step, ms in cost.once_ms.items()]
+    print_table(title, ("what", "wall", "core"), rows, (1, 2))
+    typer.echo("before: " + ", ".join(f"{name} {seconds:g} s" for name, seconds in cost.before_s.items()))
+    chosen = {round(share * (len(cost.memory) - 1)) for share in (0, 0.1, 0.5, 1)}
+    samples = [cost.memory[index] for index in sorted(chosen)]
+    typer.echo("driver's memory: " + ", ".join(f"{each.driver_mb:g} MB at {each.n_done:,}" for each in samples))
+
+
+@app.command()
+def throughput(
+    folder: Annotated[Path, typer.Argument(help="Folder for simulated shapes and workspaces.", show_default=False)],
+    shapes: Annotated[int, typer.Option(help="Shapes that count, half of them soups.", min=1)] = 100,
+    actors: Annotated[str, typer.Option(help="Numbers of actors to compare, of one thread each.")] = "1,2",
+    faces: Annotated[int, typer.Option(help="Of the clean shapes.", min=100)] = 4_000,
+    levels: Annotated[str, typer.Option(help="Face counts of remeshed shapes.")] = "10000,5000",
+    as_json: JsonOption = False,
+) -> None:
+    """How preprocessing scales.  [dim]partwise bench throughput /tmp/t --shapes 100[/dim]"""
+    from partwise_cli.bench.throughput import ThroughputRequest, measure_throughput
+
+    request = ThroughputRequest(shapes, _numbers(actors), faces, _numbers(levels))
+    with progress("simulate") as on_simulated:
+        report = measure_throughput(folder, request, on_simulated, run_progress)
+    if as_json:
+        print_json(asdict(report))
+        return
+    rows = [
+        (
+            str(run.n_actors),
+            f"{run.rate_per_min:.1f}",
+            f"{ratio:.2f}",
+            f"{run.wall_s:.0f}",
+            f"{run.stage_s:.0f}",
+            f"{run.warm_up_s:.0f}",
+            str(run.n_failed),
+        )
+        for run, ratio in zip(report.runs, report.ratios, strict=True)
+    ]
+    columns = ("actors", "shapes/min", "ratio", "wall s", "in stages s", "start and warm-up s", "failed")
+    print_table(f"Preprocessing {counted(shapes, 'shape')}", columns, rows, tuple(range(7)))
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    try:
+        return tuple(int(number) for number in text.split(",") if number.strip())
+    except ValueError as error:
+        raise typer.BadParameter(f"needs whole numbers with commas between them but is {text!r}") from error
 
 
 @app.command()
