@@ -1,0 +1,84 @@
+"""`create_app`: the service as an ASGI application. Nothing exists until it is called."""
+
+import time
+from collections.abc import AsyncIterator, Callable, Sequence
+from contextlib import ExitStack, asynccontextmanager
+
+from anyio.to_thread import current_default_thread_limiter
+from fastapi import APIRouter, FastAPI
+from fastapi.routing import APIRoute
+from starlette.middleware.cors import CORSMiddleware
+
+from partwise import __version__
+from partwise.workspace.workspace import open_workspace
+from partwise_service.openapi import install_openapi
+from partwise_service.problems import install_problems
+from partwise_service.routes import collections, parts, session
+from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
+from partwise_service.security.rate_limit import FailureLimiter
+from partwise_service.security.recent import RecentlyGood
+from partwise_service.service import Service
+from partwise_service.settings import ServiceSettings
+
+API_V1 = f"{API}v1"
+ROUTERS: Sequence[APIRouter] = (session.router, collections.router, parts.router)
+"""Every resource of the API, in the order of the document. A route file is served once its router is in here."""
+UPLOAD_PATHS: Sequence[str] = (f"{API_V1}/uploads",)
+"""Paths whose requests may be as large as `max_upload_bytes`."""
+_METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
+_REQUEST_HEADERS = ("Authorization", "Content-Type", "If-None-Match", "Last-Event-ID")
+
+
+def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.monotonic) -> FastAPI:
+    """The application. It opens the workspace when it starts and closes it when it ends.
+
+    clock : seconds, monotone, for limits on failed logins.
+    """
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        current_default_thread_limiter().total_tokens = settings.threads
+        with ExitStack() as resources:
+            workspace = resources.enter_context(open_workspace(settings.workspace))
+            limiter = FailureLimiter(settings.max_auth_failures, settings.auth_window_s, clock)
+            app.state.service = Service(settings, workspace, limiter, RecentlyGood())
+            yield
+
+    app = FastAPI(
+        title="Partwise",
+        version=__version__,
+        description="Collections of 3D shapes, their labels, and the queue of work on them.",
+        openapi_url=f"{API_V1}/openapi.json",
+        docs_url=None,  # its page would load scripts from elsewhere
+        redoc_url=None,
+        redirect_slashes=False,
+        generate_unique_id_function=_operation_id,
+        lifespan=lifespan,
+    )
+    for router in ROUTERS:
+        app.include_router(router, prefix=API_V1)
+    install_problems(app)
+    install_openapi(app)
+    _add_middleware(app, settings)
+    return app
+
+
+def _operation_id(route: APIRoute) -> str:
+    """The handler's name, which generated clients use for theirs."""
+    return route.name
+
+
+def _add_middleware(app: FastAPI, settings: ServiceSettings) -> None:
+    """From the innermost to the outermost."""
+    app.add_middleware(BodyLimitMiddleware, settings.max_body_bytes, settings.max_upload_bytes, UPLOAD_PATHS)
+    app.add_middleware(FaultMiddleware)
+    if settings.cors_origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=settings.cors_origins,
+            allow_methods=_METHODS,
+            allow_headers=_REQUEST_HEADERS,
+            allow_credentials=True,
+            expose_headers=("ETag", "Retry-After"),
+        )
+    app.add_middleware(HeadersMiddleware, settings.is_https)

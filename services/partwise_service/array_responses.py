@@ -1,0 +1,70 @@
+"""Arrays as safetensors and pictures as PNG, with entity tags, compressed where the caller takes that."""
+
+import gzip
+import hashlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from fastapi import Request, Response
+from safetensors.numpy import save
+
+SAFETENSORS = "application/vnd.safetensors"
+IMMUTABLE = "private, max-age=31536000, immutable"
+"""Of what is addressed by its content."""
+REVALIDATE = "private, no-cache"
+"""Of what may change: the caller keeps it and asks whether its tag still holds."""
+_GZIP_LEVEL = 1  # arrays shrink by nearly as much as at 6, in a fifth of the time
+_GZIP_FROM = 1024  # bytes; below, a packet is a packet
+
+SAFETENSORS_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"content": {SAFETENSORS: {"schema": {"type": "string", "format": "binary"}}}},
+    304: {"description": "What the caller holds is current"},
+}
+PNG_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"image/png": {"schema": {"type": "string", "format": "binary"}}}},
+    304: {"description": "What the caller holds is current"},
+}
+
+
+def entity_tag(*what: object) -> str:
+    """A weak tag (compressed or not, it is the same entity) from all that shapes the content."""
+    return f'W/"{hashlib.sha256(repr(what).encode()).hexdigest()[:40]}"'
+
+
+def not_modified(request: Request, tag: str, cache: str = REVALIDATE) -> Response | None:
+    """The answer if the caller holds this entity already, else None."""
+    held = {each.strip().removeprefix("W/") for each in request.headers.get("if-none-match", "").split(",")}
+    if tag.removeprefix("W/") in held or "*" in held:
+        return Response(status_code=304, headers=_headers(tag, cache))
+    return None
+
+
+def safetensors_response(
+    request: Request, arrays: Mapping[str, np.ndarray], tag: str, cache: str = REVALIDATE
+) -> Response:
+    """The arrays as one safetensors file, gzipped if the caller takes that."""
+    # safetensors writes an array's memory as it lies
+    data = save({name: np.ascontiguousarray(array) for name, array in arrays.items()})
+    headers = _headers(tag, cache)
+    if len(data) >= _GZIP_FROM and _takes_gzip(request):
+        data = gzip.compress(data, _GZIP_LEVEL, mtime=0)
+        headers["Content-Encoding"] = "gzip"
+    return Response(data, media_type=SAFETENSORS, headers=headers)
+
+
+def png_response(data: bytes, tag: str, cache: str = REVALIDATE) -> Response:
+    """A PNG file."""
+    return Response(data, media_type="image/png", headers={"ETag": tag, "Cache-Control": cache})
+
+
+def _headers(tag: str, cache: str) -> dict[str, str]:
+    return {"ETag": tag, "Cache-Control": cache, "Vary": "Accept-Encoding"}
+
+
+def _takes_gzip(request: Request) -> bool:
+    for each in request.headers.get("accept-encoding", "").lower().split(","):
+        coding, _, quality = each.partition(";")
+        if coding.strip() in ("gzip", "*"):
+            return quality.strip().replace(" ", "") not in ("q=0", "q=0.0", "q=0.00", "q=0.000")
+    return False

@@ -1,0 +1,159 @@
+"""What handlers ask for: the open workspace, who calls, in which role, and what of a path they may know of.
+
+A handler names the least role that may call it (`Annotator` < `Reviewer` < `Operator` < `Admin`). Collections and
+shapes outside the caller's scope do not exist for them: 404, the same as for ids that were never given.
+"""
+
+from collections.abc import Callable
+from typing import Annotated
+
+from fastapi import Depends, Request, Security
+from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
+
+from partwise.errors import NotFoundError
+from partwise.store.catalog import Catalog
+from partwise.store.records import Collection, Role, Shape
+from partwise.workspace.workspace import Workspace
+from partwise_service.problems import ProblemError, ProblemKind
+from partwise_service.schemas.base import RowId
+from partwise_service.security.authentication import SESSION_COOKIE, Credential, authenticate
+from partwise_service.security.identity import Identity
+from partwise_service.service import Service
+
+_bearer = HTTPBearer(auto_error=False, description="A token that `partwise token create` has shown.")
+_cookie = APIKeyCookie(name=SESSION_COOKIE, auto_error=False, description="The session that /login has begun.")
+
+
+def service(request: Request) -> Service:
+    """What is open while the application runs."""
+    found: Service = request.app.state.service
+    return found
+
+
+ServiceDep = Annotated[Service, Depends(service)]
+
+
+def workspace(open_service: ServiceDep) -> Workspace:
+    """The workspace that is served."""
+    return open_service.workspace
+
+
+WorkspaceDep = Annotated[Workspace, Depends(workspace)]
+
+
+def catalog(served: WorkspaceDep) -> Catalog:
+    """The workspace's catalog."""
+    return served.catalog
+
+
+CatalogDep = Annotated[Catalog, Depends(catalog)]
+
+
+def current_identity(
+    request: Request,
+    open_service: ServiceDep,
+    bearer: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)],
+    cookie: Annotated[str | None, Security(_cookie)],
+) -> Identity:
+    """Who calls, by token or by session. Problems: 401, 403 for a session from a foreign page, 429."""
+    address = client_address(request)
+    if bearer is not None:
+        return authenticate(open_service, Credential(bearer.credentials, is_session=False), address)
+    if cookie is None:
+        raise ProblemError(
+            ProblemKind.UNAUTHENTICATED,
+            "Send `Authorization: Bearer <token>`, or log in.",
+            headers={"WWW-Authenticate": "Bearer"},
+        )
+    refuse_foreign_origin(request, open_service)
+    return authenticate(open_service, Credential(cookie, is_session=True), address)
+
+
+Caller = Annotated[Identity, Depends(current_identity)]
+_UNSAFE = frozenset({"POST", "PUT", "PATCH", "DELETE"})
+
+
+def refuse_foreign_origin(request: Request, open_service: Service) -> None:
+    """A session may change something only from the service's own pages and those of named origins."""
+    if request.method in _UNSAFE and request.headers.get("origin") not in open_service.settings.page_origins:
+        raise ProblemError(
+            ProblemKind.FOREIGN_ORIGIN,
+            "With a session, the Origin header must be that of the service's own page; scripts use a token.",
+        )
+
+
+def refuse_foreign_page(request: Request, open_service: Service) -> None:
+    """Logging in needs no session, so that scripts may do it, which send no Origin; pages of other origins may not."""
+    if "origin" in request.headers:
+        refuse_foreign_origin(request, open_service)
+
+
+def client_address(request: Request) -> str:
+    """The caller's address, as the server sees it or a trusted proxy says it."""
+    return request.client.host if request.client is not None else "unknown"
+
+
+def require(role: Role) -> Callable[[Identity], Identity]:
+    """A dependency that lets callers of at least this role pass."""
+
+    def at_least(caller: Caller) -> Identity:
+        if not caller.role.includes(role):
+            raise ProblemError(
+                ProblemKind.FORBIDDEN, f"This takes the role {role.value} but yours is {caller.role.value}."
+            )
+        return caller
+
+    return at_least
+
+
+Annotator = Annotated[Identity, Depends(require(Role.ANNOTATOR))]
+Reviewer = Annotated[Identity, Depends(require(Role.REVIEWER))]
+Operator = Annotated[Identity, Depends(require(Role.OPERATOR))]
+Admin = Annotated[Identity, Depends(require(Role.ADMIN))]
+
+
+def require_all_scope(caller: Identity) -> None:
+    """For what concerns no single collection: people, tokens, the audit trail."""
+    if not caller.sees_all:
+        raise ProblemError(ProblemKind.FORBIDDEN, "This takes a token for all collections but yours is for some.")
+
+
+def visible_collection(served: Catalog, caller: Identity, collection_id: int) -> Collection:
+    """The collection of this id if the caller may know of it.
+
+    Raises
+    ------
+    NotFoundError : it is not there, or not for them.
+    """
+    if caller.may_see(collection_id):
+        for found in served.list_collections():
+            if found.id == collection_id:
+                return found
+    raise NotFoundError(f"there is no collection {collection_id}; see /collections for those you work on")
+
+
+def visible_shape(served: Catalog, caller: Identity, shape_id: int) -> Shape:
+    """The shape of this id if the caller may know of it.
+
+    Raises
+    ------
+    NotFoundError : it is not there, or not for them.
+    """
+    found = served.shapes_by_id([shape_id]).get(shape_id)
+    if found is None or not caller.may_see(found.collection_id):
+        raise NotFoundError(f"there is no shape {shape_id}; see /collections/…/shapes for those you work on")
+    return found
+
+
+def scoped_collection(collection_id: RowId, caller: Caller, served: CatalogDep) -> Collection:
+    """The collection in the path."""
+    return visible_collection(served, caller, collection_id)
+
+
+def scoped_shape(shape_id: RowId, caller: Caller, served: CatalogDep) -> Shape:
+    """The shape in the path."""
+    return visible_shape(served, caller, shape_id)
+
+
+ScopedCollection = Annotated[Collection, Depends(scoped_collection)]
+ScopedShape = Annotated[Shape, Depends(scoped_shape)]

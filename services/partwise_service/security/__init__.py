@@ -1,0 +1,1 @@
+"""Who may do what: credentials, sessions, origins, limits, and the headers that browsers obey."""

@@ -1,0 +1,18 @@
+"""`Service`: what is open while the application runs, for handlers to reach through `dependencies`."""
+
+from dataclasses import dataclass
+
+from partwise.workspace.workspace import Workspace
+from partwise_service.security.rate_limit import FailureLimiter
+from partwise_service.security.recent import RecentlyGood
+from partwise_service.settings import ServiceSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Service:
+    """limiter : of failures to log in, by address and by a secret's beginning. recent : secrets good lately."""
+
+    settings: ServiceSettings
+    workspace: Workspace
+    limiter: FailureLimiter
+    recent: RecentlyGood

@@ -1,0 +1,112 @@
+"""`ServiceSettings`: where the service listens, what it serves, and its limits. From the environment and arguments.
+
+Nothing is read when a module is imported: `ServiceSettings.of` is called once, by whoever starts the service.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Self
+from urllib.parse import urlsplit
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from partwise.errors import ConfigError
+
+PREFIX = "PARTWISE_SERVICE_"
+"""Of environment variables: `PARTWISE_SERVICE_PORT` sets `port`. Lists are separated by commas."""
+MEBIBYTE = 1 << 20
+
+
+class ServiceSettings(BaseModel):
+    """What the service is told when it starts. Every field may be set by an environment variable, see `PREFIX`.
+
+    public_url : how browsers reach the service when it is not http://host:port, such as behind a proxy.
+    cors_origins : pages of other origins that may call the service; none unless named, exactly.
+    trusted_proxies : addresses whose X-Forwarded-For and -Proto are believed.
+    session_h : hours after which a browser must log in again. login_code_s : seconds for which a login code is good.
+    max_body_bytes, max_upload_bytes : of a request's body, and of one to a path that takes files.
+    max_auth_failures : that one address, or one token's beginning, may make in `auth_window_s` seconds.
+    threads : handlers that run at once; each may hold a connection to the database.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    workspace: Path
+    host: str = "127.0.0.1"
+    port: int = Field(8000, ge=0, le=65_535)
+    public_url: str | None = None
+    cors_origins: tuple[str, ...] = ()
+    trusted_proxies: tuple[str, ...] = ()
+    session_h: float = Field(12.0, gt=0, le=24 * 31)
+    login_code_s: float = Field(600.0, gt=0, le=24 * 3600)
+    max_body_bytes: int = Field(4 * MEBIBYTE, ge=1024)
+    max_upload_bytes: int = Field(1024 * MEBIBYTE, ge=1024)
+    max_auth_failures: int = Field(20, ge=1)
+    auth_window_s: float = Field(60.0, gt=0)
+    threads: int = Field(12, ge=1, le=256)
+
+    @field_validator("cors_origins", "trusted_proxies", mode="before")
+    @classmethod
+    def _split(cls, value: Any) -> Any:
+        return [part.strip() for part in value.split(",") if part.strip()] if isinstance(value, str) else value
+
+    @field_validator("public_url")
+    @classmethod
+    def _check_url(cls, value: str | None) -> str | None:
+        return None if value is None else _origin(value)
+
+    @field_validator("cors_origins")
+    @classmethod
+    def _check_origins(cls, value: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(_origin(origin) for origin in value)
+
+    @classmethod
+    def of(cls, environment: Mapping[str, str], **arguments: Any) -> Self:
+        """Settings from `PARTWISE_SERVICE_…` variables; an argument that is not None goes before a variable.
+
+        Raises
+        ------
+        ConfigError : an unknown variable of the prefix, or a value of the wrong kind or out of range.
+        """
+        given = {
+            name.removeprefix(PREFIX).lower(): value for name, value in environment.items() if name.startswith(PREFIX)
+        }
+        given |= {name: value for name, value in arguments.items() if value is not None}
+        try:
+            return cls(**given)
+        except ValidationError as error:
+            first = error.errors()[0]
+            name = str(first["loc"][0]) if first["loc"] else "settings"
+            raise ConfigError(
+                f"the service's {name} ({PREFIX}{name.upper()}) is wrong: {first['msg']}; see docs/service.md"
+            ) from error
+
+    @property
+    def origin(self) -> str:
+        """Where browsers reach the service, `scheme://host[:port]`."""
+        return self.public_url or f"http://{_bracketed(self.host)}:{self.port}"
+
+    @property
+    def is_https(self) -> bool:
+        return self.origin.startswith("https://")
+
+    @property
+    def page_origins(self) -> frozenset[str]:
+        """Origins whose pages may use the session cookie to change something."""
+        own = {self.origin}
+        if self.host in ("127.0.0.1", "localhost", "::1") and self.public_url is None:
+            own |= {f"http://{name}:{self.port}" for name in ("127.0.0.1", "localhost", "[::1]")}
+        return frozenset(own | set(self.cors_origins))
+
+
+def _origin(url: str) -> str:
+    parts = urlsplit(url)
+    if parts.scheme not in ("http", "https") or not parts.hostname or parts.path.strip("/") or parts.query:
+        raise ValueError(f"an origin must look like https://labels.example.org but is {url!r}")
+    if "*" in url or "@" in parts.netloc:
+        raise ValueError(f"an origin must be exact, without * or user names, but is {url!r}")
+    return f"{parts.scheme}://{parts.netloc.lower()}"
+
+
+def _bracketed(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

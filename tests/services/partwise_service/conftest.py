@@ -1,0 +1,200 @@
+"""A service on a workspace of three small shapes, made without Ray, and callers of every role."""
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from partwise.mesh import TriMesh
+from partwise.store.records import Collection, NewToken, Role
+from partwise.testing.meshes import subdivided
+from partwise.testing.workspaces import (
+    ingest,
+    publish_evaluation,
+    publish_features,
+    publish_meshes,
+    publish_refinement,
+    save_model,
+)
+from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
+from partwise_service.app import create_app
+from partwise_service.settings import ServiceSettings
+
+PARTS = ("body", "handle")
+BODY, HANDLE = 1, 2
+API = "/api/v1"
+ORIGIN = "http://127.0.0.1:8000"
+
+
+@dataclass
+class Clock:
+    """Seconds that pass when a test says so."""
+
+    now_s: float = 1_000.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+@dataclass
+class Mugs:
+    """The workspace's path, its collection of mugs a.off, b.off and sub/c.off, and another one that has one shape."""
+
+    path: Path
+    collection_id: int
+    ids: dict[str, int]
+    other_id: int
+    other_shape_id: int
+    meshes: dict[str, TriMesh] = field(default_factory=dict)
+
+
+class Caller:
+    """Requests in the name of a person: `ann.get("/me")`."""
+
+    def __init__(self, client: TestClient, secret: str | None) -> None:
+        self._client = client
+        self.secret = secret
+        self.headers = {} if secret is None else {"Authorization": f"Bearer {secret}"}
+
+    def request(self, method: str, path: str, **given: Any) -> Any:
+        headers = {**self.headers, **given.pop("headers", {})}
+        return self._client.request(method, f"{API}{path}", headers=headers, **given)
+
+    def get(self, path: str, **given: Any) -> Any:
+        return self.request("GET", path, **given)
+
+    def post(self, path: str, **given: Any) -> Any:
+        return self.request("POST", path, **given)
+
+    def patch(self, path: str, **given: Any) -> Any:
+        return self.request("PATCH", path, **given)
+
+    def delete(self, path: str, **given: Any) -> Any:
+        return self.request("DELETE", path, **given)
+
+
+@pytest.fixture(scope="session")
+def template(tmp_path_factory: pytest.TempPathFactory) -> Mugs:
+    """Evaluated and refined by model version 1: predicted as bodies, refined as handles; c.off is the least certain."""
+    path = tmp_path_factory.mktemp("service") / "ws"
+    init_workspace(path)
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=np.float64)
+    tetrahedron = TriMesh(vertices, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    meshes = {
+        "a.off": tetrahedron,
+        "b.off": subdivided(tetrahedron),
+        "sub/c.off": TriMesh(vertices * 2.0, tetrahedron.faces),
+    }
+    with open_workspace(path) as workspace:
+        collection = workspace.catalog.create_collection("mugs", PARTS, {"up": "y"})
+        ids = _fill(workspace, collection, meshes)
+        other = workspace.catalog.create_collection("vases", ["neck"])
+        other_ids = ingest(workspace, other, {"v.off": tetrahedron})
+        publish_meshes(workspace, {other_ids["v.off"]: tetrahedron})
+    return Mugs(path, collection.id, ids, other.id, other_ids["v.off"], meshes)
+
+
+def _fill(workspace: Workspace, collection: Collection, meshes: dict[str, TriMesh]) -> dict[str, int]:
+    ids = ingest(workspace, collection, meshes)
+    publish_meshes(workspace, {ids[key]: mesh for key, mesh in meshes.items()})
+    publish_features(workspace, list(ids.values()), np.random.default_rng(0))
+    model = save_model(workspace, collection)
+    certainty = {"a.off": 0.99, "b.off": 0.8, "sub/c.off": 0.6}
+    probabilities = {ids[key]: np.tile([p, 1 - p], (meshes[key].n_faces, 1)) for key, p in certainty.items()}
+    publish_evaluation(workspace, model, (BODY, HANDLE), probabilities)
+    labels = {ids[key]: np.full(mesh.n_faces, HANDLE, dtype=np.uint16) for key, mesh in meshes.items()}
+    publish_refinement(workspace, model, labels)
+    return ids
+
+
+@pytest.fixture
+def mugs(template: Mugs, tmp_path: Path) -> Mugs:
+    path = Path(shutil.copytree(template.path, tmp_path / "ws"))
+    return Mugs(path, template.collection_id, template.ids, template.other_id, template.other_shape_id, template.meshes)
+
+
+@pytest.fixture
+def settings(mugs: Mugs) -> ServiceSettings:
+    """A test that needs other settings overrides this."""
+    return ServiceSettings(workspace=mugs.path)
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def app(settings: ServiceSettings, clock: Clock) -> FastAPI:
+    return create_app(settings, clock)
+
+
+@pytest.fixture
+def client(app: FastAPI) -> Iterator[TestClient]:
+    """Sends what it is told and no credentials of its own."""
+    with TestClient(app, base_url=ORIGIN, raise_server_exceptions=False) as started:
+        yield started
+
+
+@pytest.fixture
+def workspace(app: FastAPI, client: TestClient) -> Workspace:
+    """The workspace that the running service has open."""
+    opened: Workspace = app.state.service.workspace
+    return opened
+
+
+class Issue:
+    """Makes callers: `issue("ann", Role.ANNOTATOR)`. The person is added on first use."""
+
+    def __init__(self, client: TestClient, workspace: Workspace) -> None:
+        self._client = client
+        self._workspace = workspace
+
+    def __call__(
+        self, name: str, role: Role, scope: tuple[int, ...] | None = None, ttl: timedelta = timedelta(days=1)
+    ) -> Caller:
+        catalog = self._workspace.catalog
+        known = {person.name: person for person in catalog.list_people()}
+        person = known.get(name) or catalog.add_person(name)
+        issued = catalog.issue_token(NewToken(person.id, role, datetime.now(UTC) + ttl, scope), "test")
+        return Caller(self._client, issued.secret)
+
+
+@pytest.fixture
+def issue(client: TestClient, workspace: Workspace) -> Issue:
+    return Issue(client, workspace)
+
+
+@pytest.fixture
+def nobody(client: TestClient) -> Caller:
+    return Caller(client, None)
+
+
+@pytest.fixture
+def annotator(issue: Issue, mugs: Mugs) -> Caller:
+    """Of mugs only."""
+    return issue("ann", Role.ANNOTATOR, (mugs.collection_id,))
+
+
+@pytest.fixture
+def reviewer(issue: Issue, mugs: Mugs) -> Caller:
+    """Of mugs only."""
+    return issue("rita", Role.REVIEWER, (mugs.collection_id,))
+
+
+@pytest.fixture
+def operator(issue: Issue) -> Caller:
+    """Of all collections."""
+    return issue("oscar", Role.OPERATOR)
+
+
+@pytest.fixture
+def admin(issue: Issue) -> Caller:
+    return issue("ada", Role.ADMIN)
