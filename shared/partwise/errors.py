@@ -55,6 +55,14 @@ class ConflictError(PartwiseError, ValueError):
     """What was asked contradicts what is already committed."""
 
 
+class StaleDraftError(ConflictError):
+    """A draft went on elsewhere. state : JSON-able, what is on record now, so that no side is lost."""
+
+    def __init__(self, message: str, state: Mapping[str, Any]) -> None:
+        super().__init__(message)
+        self.state = state
+
+
 class WorkerError(PartwiseError, RuntimeError):
     """Ray cannot be reached or started, or its processes do not stay alive, whatever the shape."""
 

@@ -34,10 +34,16 @@ class ReviewReason(StrEnum):
 
     map-back : they were moved to another mesh and too little of them survived the way.
     schema : they were made under a part schema that has changed since.
+    check : the collection has a reviewer look at everything that is confirmed.
+    disagreement : several people labelled the shape, and too differently; these are the labels closest to the others.
+    rework : a reviewer sent them back; better ones are awaited.
     """
 
     MAP_BACK = "map-back"
     SCHEMA = "schema"
+    CHECK = "check"
+    DISAGREEMENT = "disagreement"
+    REWORK = "rework"
 
 
 class ReviewOutcome(StrEnum):
@@ -46,11 +52,13 @@ class ReviewOutcome(StrEnum):
     accepted : someone looked and found the labels right as they are.
     corrected : newer labels took their place.
     superseded : the labels were moved to yet another mesh, where a review of its own opens if need be.
+    rejected : someone looked and sent them back, which opens a review of reason rework.
     """
 
     ACCEPTED = "accepted"
     CORRECTED = "corrected"
     SUPERSEDED = "superseded"
+    REJECTED = "rejected"
 
 
 @dataclass(frozen=True, slots=True)

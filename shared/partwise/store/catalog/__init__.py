@@ -8,24 +8,50 @@ is not there and `StoreError` when the database cannot be reached or written, be
 from typing import Protocol
 
 from partwise.store.catalog.collections import AuditCatalog, CollectionCatalog
+from partwise.store.catalog.drafts import DraftCatalog
+from partwise.store.catalog.events import EventCatalog
+from partwise.store.catalog.jobs import JobCatalog
 from partwise.store.catalog.labels import SHOWN_KINDS, LabelCatalog
+from partwise.store.catalog.listing import ListingCatalog
 from partwise.store.catalog.models import ModelCatalog
+from partwise.store.catalog.queue import QueueCatalog
 from partwise.store.catalog.shapes import ShapeCatalog
 from partwise.store.catalog.stages import StageCatalog
+from partwise.store.catalog.tokens import TokenCatalog
 
 __all__ = [
     "SHOWN_KINDS",
     "AuditCatalog",
     "Catalog",
     "CollectionCatalog",
+    "DraftCatalog",
+    "EventCatalog",
+    "JobCatalog",
     "LabelCatalog",
+    "ListingCatalog",
     "ModelCatalog",
+    "QueueCatalog",
     "ShapeCatalog",
     "StageCatalog",
+    "TokenCatalog",
 ]
 
 
-class Catalog(CollectionCatalog, ShapeCatalog, StageCatalog, LabelCatalog, ModelCatalog, AuditCatalog, Protocol):
+class Catalog(
+    CollectionCatalog,
+    ShapeCatalog,
+    StageCatalog,
+    LabelCatalog,
+    ModelCatalog,
+    QueueCatalog,
+    DraftCatalog,
+    JobCatalog,
+    TokenCatalog,
+    EventCatalog,
+    ListingCatalog,
+    AuditCatalog,
+    Protocol,
+):
     """The whole catalog. Depend on the smallest of its parts that does."""
 
     def close(self) -> None: ...

@@ -86,3 +86,13 @@ class LabelCatalog(Protocol):
         Labels that are not right are corrected by committing better ones, which resolves the review.
         """
         ...
+
+    def reject_review(self, review_id: int, person_id: int, note: str, *, for_author: bool = False) -> Review:
+        """Send labels back with a note: the shape goes first in the queue, for their author or for anyone.
+
+        The labels stay the newest but wait in a review of reason rework, which is returned; better labels resolve it.
+
+        Raises `ConflictError` if the review is resolved already or somebody works on the shape, `ParameterError`
+        without a note.
+        """
+        ...

@@ -4,7 +4,30 @@
 """
 
 from partwise.store.records.collections import AuditEntry, Collection, Person
+from partwise.store.records.confirmations import (
+    Answer,
+    BlindCheck,
+    Closeness,
+    Confirmation,
+    Consensus,
+    NewBlindCheck,
+    NewConfirmation,
+    NewConsensus,
+)
+from partwise.store.records.drafts import Draft, DraftOutcome, NewDraft, StoredStroke
+from partwise.store.records.events import Event, EventBounds, EventKind, NewEvent
+from partwise.store.records.jobs import COALESCED_KINDS, Job, JobKind, JobState, Progress
 from partwise.store.records.labels import LabelRevision, NewRevision, RevisionKind
+from partwise.store.records.leases import (
+    MAX_HELD,
+    Lease,
+    LeaseOutcome,
+    LeasePurpose,
+    NewClaim,
+    QueueDepth,
+    check_lease_time,
+)
+from partwise.store.records.listing import ListAnchor, ListedShape, Ordering, ShapeFilter, ShapeOrder
 from partwise.store.records.models import Embedding, FirstShape, Model, NewModel, QueueAnchor, QueueRow
 from partwise.store.records.shapes import (
     IngestedShape,
@@ -29,22 +52,51 @@ from partwise.store.records.stages import (
     StageCount,
     StageRun,
 )
+from partwise.store.records.tokens import IssuedCode, IssuedToken, NewToken, Role, Token
 
 __all__ = [
+    "COALESCED_KINDS",
+    "MAX_HELD",
+    "Answer",
     "AuditEntry",
+    "BlindCheck",
     "Block",
+    "Closeness",
     "Collection",
+    "Confirmation",
+    "Consensus",
+    "Draft",
+    "DraftOutcome",
     "Embedding",
+    "Event",
+    "EventBounds",
+    "EventKind",
     "Failure",
     "FailureKind",
     "FirstShape",
     "IngestOutcome",
     "IngestedShape",
+    "IssuedCode",
+    "IssuedToken",
+    "Job",
+    "JobKind",
+    "JobState",
     "LabelRevision",
+    "Lease",
+    "LeaseOutcome",
+    "LeasePurpose",
+    "ListAnchor",
+    "ListedShape",
     "Mesh",
     "MeshRole",
     "Model",
+    "NewBlindCheck",
     "NewBlock",
+    "NewClaim",
+    "NewConfirmation",
+    "NewConsensus",
+    "NewDraft",
+    "NewEvent",
     "NewFailure",
     "NewMesh",
     "NewModel",
@@ -52,14 +104,24 @@ __all__ = [
     "NewScore",
     "NewShape",
     "NewStageRun",
+    "NewToken",
+    "Ordering",
     "Person",
+    "Progress",
     "QueueAnchor",
+    "QueueDepth",
     "QueueRow",
     "RevisionKind",
+    "Role",
     "RunStatus",
     "Score",
     "Shape",
+    "ShapeFilter",
+    "ShapeOrder",
     "ShapeState",
     "StageCount",
     "StageRun",
+    "StoredStroke",
+    "Token",
+    "check_lease_time",
 ]

@@ -1,0 +1,71 @@
+"""Jobs: work that the service asks for and the workers do."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from typing import Any
+
+
+class JobKind(StrEnum):
+    """What is to be done to a collection."""
+
+    PREPROCESS = "preprocess"
+    TRAIN = "train"
+    EVALUATE = "evaluate"
+    REFINE = "refine"
+    EXPORT = "export"
+    INGEST = "ingest"
+
+
+COALESCED_KINDS = (JobKind.PREPROCESS, JobKind.TRAIN, JobKind.EVALUATE, JobKind.REFINE)
+"""Kinds of which one waiting job is enough for all who ask: it works on what is there when it starts."""
+
+
+class JobState(StrEnum):
+    """Where a job stands; the last three are final."""
+
+    PENDING = "pending"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a job is. `n_total` is None while that is unknown; `message` is one line for people."""
+
+    n_done: int = 0
+    n_failed: int = 0
+    n_total: int | None = None
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A job on record. `parameters` and `result` are small JSON.
+
+    owner : the process that works on it, or did last. `heartbeat_at` is when it last said so.
+    attempts : how often it was begun.
+    cancel_requested : its owner is asked to stop.
+    """
+
+    id: int
+    collection_id: int
+    kind: JobKind
+    parameters: Mapping[str, Any]
+    state: JobState
+    owner: str | None
+    attempts: int
+    progress: Progress
+    result: Mapping[str, Any] | None
+    cancel_requested: bool
+    created_at: datetime
+    started_at: datetime | None
+    heartbeat_at: datetime | None
+    finished_at: datetime | None
+
+    @property
+    def is_over(self) -> bool:
+        return self.state in (JobState.DONE, JobState.FAILED, JobState.CANCELLED)
