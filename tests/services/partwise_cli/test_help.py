@@ -40,7 +40,7 @@ def test_the_commands_are_these() -> None:
     assert set(COMMANDS) == {
         "init", "settings", "ingest", "preprocess", "retry", "status", "gc", "migrate", "import", "confirm", "export", "train",
         "evaluate", "refine", "select", "queue", "simulate", "demo", "doctor", "version", "bench", "bench describe",
-        "bench loo",
+        "bench loo", "bench remeshing", "bench calibration", "bench scheduling", "bench throughput", "bench toolbox",
     }  # fmt: skip
 
 
