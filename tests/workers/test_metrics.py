@@ -1,9 +1,11 @@
 """What a run tells arrives where Prometheus looks for it."""
 
+import json
 import re
 import threading
 import urllib.request
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 import ray
@@ -84,3 +86,11 @@ def test_restarts_are_counted_by_what_ended_the_process(value: Value) -> None:
 def test_nothing_is_labelled_by_shape_run_or_person(samples: list[tuple[str, dict[str, str], float]]) -> None:
     ours = {label for _, labels, _ in samples for label in labels if label[0].islower() and "otel" not in label}
     assert ours == {"stage", "kind", "le"}
+
+
+def test_the_dashboard_asks_for_metrics_that_there_are(samples: list[tuple[str, dict[str, str], float]]) -> None:
+    dashboard = (Path(__file__).parents[2] / "deploy" / "grafana" / "partwise-workers.json").read_text(encoding="utf-8")
+    queries = [target["expr"] for panel in json.loads(dashboard)["panels"] for target in panel["targets"]]
+    asked = {name for query in queries for name in re.findall(r"ray_(partwise_\w+)", query)}
+    assert asked
+    assert asked <= {name for name, _, _ in samples}
