@@ -112,6 +112,15 @@ def cores() -> Cores:
     return Cores(sum(with_any), max(with_any), min(with_any))
 
 
+def require_living_node() -> None:
+    """Raises WorkerError where Ray has no node left: processes that are asked for would be waited for without end."""
+    if not any(node["Alive"] for node in ray.nodes()):  # type: ignore[no-untyped-call]
+        raise WorkerError(
+            "Ray must have a node to work on but its last one died (its raylet was killed, or the machine ran out of "
+            "memory); run again: what is finished is kept"
+        )
+
+
 def n_cores() -> int:
     """Cores of the connected Ray, at least one."""
     return cores().total

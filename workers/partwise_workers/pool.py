@@ -17,6 +17,7 @@ from ray.exceptions import RayError, RayTaskError
 from partwise.errors import PartwiseError, WorkerError
 from partwise.store.array_store import ArrayStore
 from partwise.store.records import FailureKind
+from partwise_workers.cluster import require_living_node
 from partwise_workers.events import ActorRestarted, OnEvent, ignore_events
 from partwise_workers.last_words import LastWords, last_words_name, take_last_words, take_step
 from partwise_workers.supervision import Death, Job, Rules, why_large, why_late
@@ -136,7 +137,7 @@ class ActorPool:
         Raises
         ------
         PartwiseError : the store or a stage's own needs (renderer, model) fail an actor, whatever the shape.
-        WorkerError : actors cannot be started.
+        WorkerError : actors cannot be started, or Ray has no node left.
         """
         finished = []
         for reference in ready:
@@ -164,6 +165,7 @@ class ActorPool:
             ray.kill(worker.actor)
 
     def _start_actor(self) -> None:
+        require_living_node()
         worker_id = uuid.uuid4().hex
         worker = _Worker(self._new_actor(worker_id), worker_id)
         self._starting[worker.actor.start.remote()] = worker

@@ -16,6 +16,7 @@ from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import StageCatalog
 from partwise.store.records import NewBlock, NewMesh, NewScore, NewStageRun
 from partwise_workers.actors import Packed
+from partwise_workers.cluster import require_living_node
 from partwise_workers.pool import Actor, Reference, first_line, raise_own
 from partwise_workers.stage import Stage
 from partwise_workers.tasks import StagedResult
@@ -127,7 +128,7 @@ class Publisher:
         Raises
         ------
         StoreError : a store refuses. What is staged stays there for the next run.
-        WorkerError : the packer keeps dying.
+        WorkerError : the packer keeps dying, or Ray has no node left.
         """
         self._arrived.update(reference for reference in ready if reference in self._packing)
         while self._packing and (first := next(iter(self._packing))) in self._arrived:
@@ -186,6 +187,7 @@ class Publisher:
                 f"a block of {len(packing.ready)} shapes must be written but its packer died {packing.attempt} times: "
                 f"{first_line(error)}; results are kept: free some memory or lower [workers] block_shapes, run again"
             ) from error
+        require_living_node()
         if self._packer is packing.packer:
             self.close()
         self._pack(packing.stage, packing.ready, packing.attempt + 1)

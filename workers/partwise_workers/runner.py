@@ -16,7 +16,7 @@ from partwise.store.catalog import StageCatalog
 from partwise.store.records import NewFailure
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise_workers.actors import Packer, StageWorker
-from partwise_workers.cluster import Crew, cores, thread_environment
+from partwise_workers.cluster import Crew, cores, require_living_node, thread_environment
 from partwise_workers.events import InFlight, OnEvent, StageDone, StageFailed, ignore_events
 from partwise_workers.pool import Actor, ActorPool
 from partwise_workers.publishing import AlsoPublish, Publisher, nothing_else
@@ -139,10 +139,14 @@ class StageRunner:
             self._on_event(InFlight(n_in_flight))
 
     def _note_idleness(self, pool: ActorPool, active_at: float) -> float:
-        """Says so once a minute while no process could be started yet; returns since when nothing runs."""
+        """Says so once a minute while no process could be started yet; returns since when nothing runs.
+
+        Raises WorkerError where none can be.
+        """
         now = time.monotonic()
         if not pool.is_done or now - active_at < PATIENCE_S:
             return active_at if pool.is_done else now
+        require_living_node()
         logger.warning("waiting for worker processes to start; has the cluster a free core?")
         return now
 
