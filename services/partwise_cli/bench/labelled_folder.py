@@ -78,19 +78,31 @@ def sampled(files: Sequence[ShapeFile], limit: int | None) -> list[ShapeFile]:
     return chosen
 
 
-def tasks(files: Sequence[ShapeFile], predictions: Path | None) -> Iterator[TaskShape]:
+def fully_labelled(files: Sequence[ShapeFile], refused: list[str]) -> Iterator[tuple[ShapeFile, TrueShape]]:
+    """Shapes whose every face has a true part, one at a time; why the others are left out goes to `refused`."""
+    for file in files:
+        shape = file.read()
+        n_unlabelled = int((shape.truth == NO_CLASS).sum())
+        if n_unlabelled:
+            refused.append(
+                f"{file.mesh}: {n_unlabelled:,} faces have no true part; label them to measure on this shape"
+            )
+        else:
+            yield file, shape
+
+
+def tasks(files: Sequence[ShapeFile], predictions: Path | None, refused: list[str]) -> Iterator[TaskShape]:
     """Shapes to annotate, one at a time, with the predictions that a folder has for them.
 
     predictions : has `predicted/` and `refined/`, or one of them, with `[<Category>/]<id>.seg` of part ids: parts by
-    name, the first is 1; −1 is unlabelled. None to simulate.
+    name, the first is 1; −1 is unlabelled. None to simulate. refused : as `fully_labelled` has it.
 
     Raises
     ------
     NotFoundError : a shape has neither.
     LabelError : labels of another mesh, or part ids that the category does not have.
     """
-    for file in files:
-        shape = file.read()
+    for file, shape in fully_labelled(files, refused):
         if predictions is None:
             yield TaskShape(shape, file.part_names)
             continue

@@ -10,7 +10,7 @@ from typing import Any
 
 from partwise.errors import ParameterError
 from partwise_cli.bench.annotating import TARGETS, AnnotatingMeasurement, measure_annotating
-from partwise_cli.bench.labelled_folder import ShapeFile, labelled_files, sampled, tasks
+from partwise_cli.bench.labelled_folder import ShapeFile, fully_labelled, labelled_files, sampled, tasks
 from partwise_cli.bench.patches import PatchMeasurement, TrueShape, measure_patches
 from partwise_cli.bench.refinement import (
     BoundaryMeasurement,
@@ -66,12 +66,13 @@ class ToolboxRequest:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """One subject: its measurement, processor seconds, and how many shapes it was of."""
+    """One subject: its measurement, processor seconds, how many shapes it was of, and why others were left out."""
 
     subject: Subject
     result: Measurement
     core_s: float
     n_shapes: int
+    refused: tuple[str, ...]
 
 
 def parse_subjects(text: str | None) -> tuple[Subject, ...]:
@@ -95,8 +96,7 @@ def run_toolbox(request: ToolboxRequest, on_progress: Callable[[str], Advance]) 
 
     Raises
     ------
-    NotFoundError, NotEnoughDataError : the folder is missing or has no labelled meshes.
-    LabelError : a mesh with unlabelled faces where boundaries, model or annotator are measured.
+    NotFoundError, NotEnoughDataError : the folder is missing or has no labelled meshes, or none that can be used.
     """
     files = labelled_files(request.folder, on_progress("read parts"))
     for subject in request.subjects:
@@ -108,9 +108,9 @@ def run_toolbox(request: ToolboxRequest, on_progress: Callable[[str], Advance]) 
             n_done += 1
             advance(n_done, total, name)
 
-        started = time.process_time()
-        result = _measure(subject, request, chosen, on_shape)
-        yield Measured(subject, result, round(time.process_time() - started, 2), len(chosen))
+        started, refused = time.process_time(), list[str]()
+        result = _measure(subject, request, chosen, on_shape, refused)
+        yield Measured(subject, result, round(time.process_time() - started, 2), n_done, tuple(refused))
 
 
 def toolbox_json(request: ToolboxRequest, measured: Sequence[Measured]) -> dict[str, Any]:
@@ -125,20 +125,21 @@ def toolbox_json(request: ToolboxRequest, measured: Sequence[Measured]) -> dict[
 
 
 def _measure(
-    subject: Subject, request: ToolboxRequest, files: Sequence[ShapeFile], on_shape: Callable[[str], None]
+    subject: Subject,
+    request: ToolboxRequest,
+    files: Sequence[ShapeFile],
+    on_shape: Callable[[str], None],
+    refused: list[str],
 ) -> Measurement:
-    if subject is Subject.ANNOTATOR:
-        shapes = tasks(files, request.predictions)
-        return measure_annotating(shapes, request.seed, request.targets, on_shape)
     if subject is Subject.PATCHES:
-        return measure_patches(_read(files), on_shape=on_shape)
+        return measure_patches((file.read() for file in files), on_shape=on_shape)
+    if subject is Subject.ANNOTATOR:
+        shapes = tasks(files, request.predictions, refused)
+        return measure_annotating(shapes, request.seed, request.targets, on_shape)
+    labelled: Iterator[TrueShape] = (shape for _, shape in fully_labelled(files, refused))
     if subject is Subject.BOUNDARIES:
-        return measure_boundary_refinement(_read(files), request.seed, on_shape=on_shape)
-    return measure_model_refinement_time(_read(files), request.seed, on_shape=on_shape)
-
-
-def _read(files: Sequence[ShapeFile]) -> Iterator[TrueShape]:
-    return (file.read() for file in files)
+        return measure_boundary_refinement(labelled, request.seed, on_shape=on_shape)
+    return measure_model_refinement_time(labelled, request.seed, on_shape=on_shape)
 
 
 def _choices() -> str:

@@ -293,6 +293,7 @@ def toolbox(
         for each in run_toolbox(request, lambda title: bars.enter_context(progress(title))):
             measured.append(each)
             bars.close()  # a bar must be gone before its tables come
+            warning_lines(each.refused)
             if not as_json:
                 print_measured(each)
     if as_json:
