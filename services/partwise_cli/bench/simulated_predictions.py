@@ -16,7 +16,7 @@ from partwise.simulate.annotator.sight import regions
 from partwise_cli.bench.displacement import smooth_field
 
 ACCURACY = 0.92
-"""Share of the area that the paper's network has right on a held-out shape of the Princeton benchmark, about."""
+"""Share of the area taken to be right on a held-out shape; `partwise bench loo` measures it for a real model."""
 ACCURACY_SPREAD = 0.03
 REACH = 0.06
 """Distance from a boundary, in diagonals, from which on a model is as sure as it gets."""

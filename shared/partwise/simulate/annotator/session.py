@@ -153,8 +153,8 @@ class _Session:
         """Presses "start from": a command, and the labels are there."""
         self._since_refining = STROKES_BEFORE_REFINING  # ragged boundaries are seen at once
         after = np.asarray(labels).astype(np.uint16)
-        self.begun_with = self._sight.right_share(after)
         delta = LabelDelta.between(self.editor.labels, after)
+        self.begun_with = self._sight.right_share(after)
         self._perform(Delta.of(DeltaSource.START_FROM, delta), command_s(self._equipment.motor))
 
     def work(self) -> None:

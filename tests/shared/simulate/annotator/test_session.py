@@ -10,6 +10,7 @@ from partwise.errors import LabelError, ParameterError
 from partwise.labels.operations import Assign, Delta, DeltaSource, Paint, SegmentWide, Undo
 from partwise.labels.replay import replay
 from partwise.labels.stroke_json import log_from_json, log_to_json
+from partwise.mesh import TriMesh
 from partwise.simulate.annotator.motor import MotorModel, Tool
 from partwise.simulate.annotator.session import OPENED_AT, Equipment, annotate
 from partwise.simulate.annotator.sight import Sight
@@ -130,7 +131,7 @@ def test_cost_up_to_a_target_is_that_of_the_log_until_then(desk):
     assert made.cost(0.5).active_s < made.cost().active_s
 
 
-def test_where_nobody_knows_what_belongs_nothing_is_done(desk):
+def test_where_nobody_knows_what_belongs_nothing_counts(desk):
     unknown = np.where(desk.sight.points[:, 0] > 0.1, 0, desk.belongs)
     sight = Sight.of(desk.mesh, unknown)
     made = annotate(desk.mesh, sight, desk.schema, desk.equipped(Tool.PAINT, target=0.9), np.random.default_rng(0))
@@ -141,6 +142,12 @@ def test_refuses_sight_of_another_mesh(desk):
     other = Sight.of(*_half(desk))
     with pytest.raises(LabelError, match="another mesh"):
         annotate(desk.mesh, other, desk.schema, desk.equipped(Tool.PAINT), np.random.default_rng(0))
+
+
+def test_refuses_a_start_of_another_mesh_or_with_unknown_parts(desk):
+    for start, message in ((desk.belongs[1:], "one mesh"), (desk.belongs + 1, "part of the schema")):
+        with pytest.raises(LabelError, match=message):
+            work(desk, Tool.PAINT, start=start)
 
 
 @pytest.mark.parametrize(
@@ -163,7 +170,5 @@ def test_refuses_equipment_that_cannot_be(options, message):
 
 
 def _half(desk):
-    from partwise.mesh import TriMesh
-
     half = desk.mesh.n_faces // 2
     return TriMesh(desk.mesh.vertices, desk.mesh.faces[:half]), desk.belongs[:half]
