@@ -8,7 +8,8 @@ import pytest
 from partwise.errors import NotFoundError, StageRefusedError, StoreError
 from partwise.store.blocks import BlockKind, Domain, Quantity
 from partwise.store.records import FailureKind
-from partwise_workers.actors import MAX_REASON, _failure, _Packer, _StageWorker
+from partwise_workers.actors import _failure, _Packer, _StageWorker
+from partwise_workers.stage import MAX_REASON
 from partwise_workers.tasks import ShapeTask, StageCall, StagedResult, StageFailure
 
 ANY_CALL = StageCall(ShapeTask(1, "a.off", "sources/a", (("first", "k"),), {}), "first", "k", {})

@@ -12,6 +12,7 @@ import trimesh
 from partwise.errors import StageRefusedError
 from partwise.geometry.manifold import manifold_report
 from partwise.mesh import TriMesh
+from partwise.remesh.ladder import AttemptResult, Ladder, Level
 from partwise.remesh.parameters import AlphaWrap, ImplicitContour, RemeshParameters
 from partwise.store.block_kinds import REMESH
 from partwise.store.meshes import mesh_arrays
@@ -140,8 +141,42 @@ def test_without_its_own_level_a_shape_gets_the_next_coarser() -> None:
     assert result.summary["working_level"] == 500
 
 
+def test_an_attempt_whose_library_raises_is_refused_and_the_next_one_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    attempt = Ladder.attempt
+
+    def raise_at_first(ladder: Ladder, index: int) -> AttemptResult:
+        if index == 0:
+            raise RuntimeError("CGAL error: precondition violation!\nExpression: is_valid")
+        return attempt(ladder, index)
+
+    monkeypatch.setattr(Ladder, "attempt", raise_at_first)
+    with opened() as run:
+        result = run(FakeInputs(BOWL))
+    refused = [each["refused"] for each in result.summary["attempts"]]
+    assert refused[1:] == ["RuntimeError: CGAL error: precondition violation!", None]
+
+
+def test_a_level_whose_library_raises_is_absent_and_the_others_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    level = Ladder.level
+
+    def raise_at_the_second(ladder: Ladder, surface: TriMesh, n_faces: int) -> Level:
+        if n_faces == 1_000:
+            raise MemoryError("bad allocation")
+        return level(ladder, surface, n_faces)
+
+    monkeypatch.setattr(Ladder, "level", raise_at_the_second)
+    with opened() as run:
+        result = run(FakeInputs(BOWL))
+    absent = [each["absent"] for each in result.summary["levels"]]
+    assert absent == [None, "MemoryError: bad allocation", None]
+    assert result.summary["working_level"] == 500
+
+
 def test_what_no_attempt_can_make_is_refused_with_all_that_was_tried() -> None:
-    with opened() as run, pytest.raises(StageRefusedError, match=r"all 3 attempts were refused.+50.0% of the") as caught:
+    with (
+        opened() as run,
+        pytest.raises(StageRefusedError, match=r"all 3 attempts were refused.+50.0% of the") as caught,
+    ):
         run(FakeInputs(TWO_BALLS))
     attempts = json.loads(json.dumps(caught.value.detail))["attempts"]
     assert [attempt["method"] for attempt in attempts] == ["as is", "alpha wrap", "alpha wrap", "implicit contour"]

@@ -22,7 +22,7 @@ from partwise.store.ragged import ragged_quantities
 from partwise.store.records import FailureKind
 from partwise_workers.last_words import last_words_name, note_step, progress_name
 from partwise_workers.sentinel import resident_bytes
-from partwise_workers.stage import RunStage, Stage, StageResult
+from partwise_workers.stage import RunStage, Stage, StageResult, reason_of
 from partwise_workers.tasks import ShapeTask, StageCall, StagedName, StagedResult, StageFailure, StageReport
 from partwise_workers.watch import Sentinel, Unwatched, Watch
 
@@ -30,9 +30,6 @@ logger = logging.getLogger(__name__)
 
 ACCOUNT = "_account"
 """Beside a staged result's arrays: its summary and seconds as JSON, for a run that finds it after a crash."""
-
-MAX_REASON = 500
-"""Characters of an unforeseen error that are kept as the reason; the traceback has the rest."""
 
 
 class _TaskInputs:
@@ -194,10 +191,9 @@ def _failure(call: StageCall, error: BaseException, seconds: float) -> StageFail
     kind = FailureKind.MEMORY if isinstance(error, MemoryError) else FailureKind.ERROR
     if isinstance(error, PartwiseError):
         known = error.detail if isinstance(error, StageRefusedError) else {}
-        return StageFailure(call.stage, call.key, kind, str(error), seconds, known)
-    reason = f"{type(error).__name__}: {error}".strip().splitlines()[0][:MAX_REASON]
+        return StageFailure(call.stage, call.key, kind, reason_of(error), seconds, known)
     detail = {"traceback": "".join(traceback.format_exception(error))}
-    return StageFailure(call.stage, call.key, kind, reason, seconds, detail)
+    return StageFailure(call.stage, call.key, kind, reason_of(error), seconds, detail)
 
 
 @dataclass(frozen=True, slots=True)

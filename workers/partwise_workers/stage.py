@@ -13,8 +13,12 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
+from partwise.errors import PartwiseError
 from partwise.store.array_store import ArrayStore
 from partwise.store.blocks import BlockKind
+
+MAX_REASON = 500
+"""Characters of an unforeseen error that are kept as the reason; the traceback has the rest."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,3 +92,10 @@ def stage_key(stage: Stage, input_key: str) -> str:
     """SHA-256 (hex) over what shapes the stage's result; `input_key` is the source's hash or the read stage's key."""
     content = {"stage": stage.name, "identity": stage.identity, "input": input_key}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def reason_of(error: BaseException) -> str:
+    """Why something failed, in one line: one of our errors in its own words, any other with its type."""
+    if isinstance(error, PartwiseError):
+        return str(error)
+    return f"{type(error).__name__}: {error}".strip().splitlines()[0][:MAX_REASON]

@@ -140,8 +140,9 @@ class Ladder:
             return AttemptResult(_refused(attempts[index], started, str(error)), None)
         outer = largest_outer_component(raw)
         if outer.dropped_area > self._parameters.max_dropped_area:
+            pieces = "1 loose piece holds" if outer.n_dropped == 1 else f"{outer.n_dropped} loose pieces hold"
             refused = (
-                f"{outer.n_dropped} loose pieces hold {outer.dropped_area:.1%} of the area where at most "
+                f"{pieces} {outer.dropped_area:.1%} of the area where at most "
                 f"{self._parameters.max_dropped_area:.1%} may be dropped"
             )
             return AttemptResult(_refused(used, started, refused, raw.n_faces, outer.dropped_area), None)

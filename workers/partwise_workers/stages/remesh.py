@@ -3,6 +3,8 @@
 What it stores is judged as stored, in float32: rounding could collapse a face.
 """
 
+import logging
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
@@ -18,12 +20,14 @@ from partwise.store.block_kinds import REMESH
 from partwise.store.blocks import BlockKind
 from partwise.store.levels import remeshed_arrays
 from partwise.workspace.settings import CollectionSettings, RemeshPolicy
-from partwise_workers.stage import RunStage, ShapeInputs, StageResult
+from partwise_workers.stage import RunStage, ShapeInputs, StageResult, reason_of
 from partwise_workers.stages import mesh as mesh_stage
 
 if TYPE_CHECKING:
     from partwise.remesh.ladder import Attempt, AttemptResult, Ladder, Level, RemeshResult
     from partwise.render.views import DepthRenderer
+
+logger = logging.getLogger(__name__)
 
 NAME = "remesh"
 
@@ -108,19 +112,17 @@ class RemeshStage:
                 results.append(_not_made(parameters, inputs.failed_steps[step]))
             else:
                 inputs.begin(step)
-                results.append(_storable(ladder.attempt(index)))
+                results.append(_attempted(ladder, index, parameters))
         return results
 
     def _levels(self, ladder: "Ladder", surface: TriMesh, inputs: ShapeInputs) -> Iterator["Level"]:
-        from partwise.remesh.ladder import Level
-
         for n_faces in self.parameters.levels:
             step = f"level {n_faces}"
             if step in inputs.failed_steps:
-                yield Level(n_faces, None, "", None, inputs.failed_steps[step], 0.0)
+                yield _absent(n_faces, inputs.failed_steps[step])
             else:
                 inputs.begin(step)
-                yield _storable_level(ladder.level(surface, n_faces))
+                yield _made_level(ladder, surface, n_faces)
 
     def _result(self, original: TriMesh, working: TriMesh, result: "RemeshResult") -> StageResult:
         attempts = [asdict(attempt) for attempt in result.attempts]
@@ -183,10 +185,36 @@ def _defects_as_stored(mesh: TriMesh) -> str | None:
     return None if defects is None else f"rounded to float32 it has {defects}"
 
 
-def _not_made(parameters: Any, why: str) -> "AttemptResult":
+def _attempted(ladder: "Ladder", index: int, parameters: Any) -> "AttemptResult":
+    """An attempt; whatever its libraries raise refuses it and no more, so that the next one is tried."""
+    started = time.process_time()
+    try:
+        return _storable(ladder.attempt(index))
+    except Exception as error:  # a step's edge: native libraries raise types of their own
+        logger.warning("an attempt failed", exc_info=True)
+        return _not_made(parameters, reason_of(error), time.process_time() - started)
+
+
+def _made_level(ladder: "Ladder", surface: TriMesh, n_faces: int) -> "Level":
+    """A level; whatever its libraries raise costs only this one."""
+    started = time.process_time()
+    try:
+        return _storable_level(ladder.level(surface, n_faces))
+    except Exception as error:  # as for attempts
+        logger.warning("a level failed", exc_info=True)
+        return _absent(n_faces, reason_of(error), time.process_time() - started)
+
+
+def _not_made(parameters: Any, why: str, core_s: float = 0.0) -> "AttemptResult":
     from partwise.remesh.ladder import Attempt, AttemptResult, method_name
 
-    return AttemptResult(Attempt(method_name(parameters), asdict(parameters), 0.0, None, 0.0, None, why), None)
+    return AttemptResult(Attempt(method_name(parameters), asdict(parameters), core_s, None, 0.0, None, why), None)
+
+
+def _absent(n_faces: int, why: str, core_s: float = 0.0) -> "Level":
+    from partwise.remesh.ladder import Level
+
+    return Level(n_faces, None, "", None, why, core_s)
 
 
 def _level_account(
@@ -216,7 +244,7 @@ def _refusal(attempts: "Sequence[Attempt]") -> StageRefusedError:
     which = "nearest" if judged else "last"
     return StageRefusedError(
         f"remeshing must end with one closed surface like the original but all {len(made)} attempts were refused, the "
-        f"{which} ({telling.method}) because: {telling.refused}; mend the file, or take it as it is with "
-        "`partwise settings --remesh never`",
+        f"{which} ({telling.method}) because: {telling.refused}; mend the file, or loosen that limit under [remesh] in "
+        "partwise.toml (`partwise settings --remesh never` takes every shape of the collection as it is)",
         {"attempts": [asdict(attempt) for attempt in attempts]},
     )
