@@ -145,7 +145,7 @@ class ActorPool:
                 self._welcome(reference)
             elif reference in self._running:
                 finished += self._take(reference)
-        self._stop_late_ones()
+        finished += self._judge_late_ones()
         finished += self._bury_the_dead()
         self._dismiss(ready)
         while self._idle and self._again:
@@ -232,13 +232,24 @@ class ActorPool:
         """Whether the next stage would be blamed for memory that this process did not give back."""
         return resident_bytes - worker.base_bytes > RETAINED_SHARE * (self._lowest_ceiling - worker.base_bytes)
 
-    def _stop_late_ones(self) -> None:
+    def _judge_late_ones(self) -> list[ShapeOutcome]:
+        """Stops what is past its deadline, unless it has finished while the driver was busy with other things."""
         now = time.monotonic()
-        for reference, running in list(self._running.items()):
-            limits = self._rules.limits[running.job.call.stage]
-            if now - running.started > limits.deadline_s:
-                del self._running[reference]
-                self._lose(running, FailureKind.DEADLINE, why_late(limits))
+        late = [
+            reference
+            for reference, running in self._running.items()
+            if now - running.started > self._deadline_s(running)
+        ]
+        if not late:
+            return []
+        done, hung = ray.wait(late, num_returns=len(late), timeout=0)
+        for reference in hung:
+            running = self._running.pop(reference)
+            self._lose(running, FailureKind.DEADLINE, why_late(self._rules.limits[running.job.call.stage]))
+        return [outcome for reference in done for outcome in self._take(reference)]
+
+    def _deadline_s(self, running: _Running) -> float:
+        return self._rules.limits[running.job.call.stage].deadline_s
 
     def _lose(self, running: _Running, kind: FailureKind, why: str) -> None:
         """Replaces the actor, and waits for its last words."""
