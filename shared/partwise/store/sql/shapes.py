@@ -9,7 +9,6 @@ from sqlalchemy import Connection, Select, exists, func, literal, not_, or_, sel
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
-from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import IngestedShape, IngestOutcome, Mesh, MeshRole, NewMesh, NewShape, Shape, ShapeState
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import batches, insert_for
@@ -71,8 +70,8 @@ def _known_shape(connection: Connection, new: NewShape, known: Shape, now: datet
 
 
 def _is_labelled(shape_id: int) -> Any:
-    kinds = [kind.value for kind in SHOWN_KINDS]
-    return exists().where(t.label_revision.c.shape_id == shape_id, t.label_revision.c.kind.in_(kinds))
+    """Of any kind: reference labels would move on to what may be another shape altogether, and nobody reviews them."""
+    return exists().where(t.label_revision.c.shape_id == shape_id)
 
 
 def shapes_by_id(connection: Connection, shape_ids: SizedIterable[int]) -> dict[int, Shape]:

@@ -46,12 +46,13 @@ class ShapeConformance:
         assert catalog.shape(shape_id).source_hash == "other"
 
     def test_changed_source_of_a_labelled_shape_is_a_conflict(self, catalog: Catalog) -> None:
-        collection, (shape_id,) = add_collection(catalog, 1)
-        publish_mesh(catalog, shape_id)
-        label(catalog, shape_id)
-        (conflict,) = catalog.add_shapes(collection.id, [NewShape("0.off", "other", ".off")])
-        assert conflict.outcome == IngestOutcome.CONFLICT
-        assert catalog.shape(shape_id).source_hash == "source0"
+        collection, ids = add_collection(catalog, len(RevisionKind))
+        for number, (shape_id, kind) in enumerate(zip(ids, RevisionKind, strict=True)):
+            publish_mesh(catalog, shape_id)
+            label(catalog, shape_id, kind=kind)
+            (conflict,) = catalog.add_shapes(collection.id, [NewShape(f"{number}.off", "other", ".off")])
+            assert conflict.outcome == IngestOutcome.CONFLICT
+            assert catalog.shape(shape_id).source_hash == f"source{number}"
 
     def test_same_key_twice_in_a_batch_adds_nothing(self, catalog: Catalog) -> None:
         collection, _ = add_collection(catalog, 0)
