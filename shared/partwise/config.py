@@ -71,6 +71,7 @@ class LimitsConfig:
     mesh: StageLimits = field(default_factory=StageLimits)
     remesh: RemeshLimits = field(default_factory=RemeshLimits)
     describe: DescribeLimits = field(default_factory=DescribeLimits)
+    picture: StageLimits = field(default_factory=StageLimits)
     evaluate: StageLimits = field(default_factory=StageLimits)
     refine: StageLimits = field(default_factory=StageLimits)
 

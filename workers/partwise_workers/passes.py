@@ -10,6 +10,7 @@ from partwise.errors import NotFoundError
 from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.records import Collection, MeshRole, Model, NewMesh, NewScore
 from partwise.workspace.progress import OnRunProgress, RunProgress
+from partwise.workspace.settings import settings_of
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected
 from partwise_workers.events import OnEvent, RunEvent, ignore_events
@@ -24,6 +25,7 @@ from partwise_workers.stages import evaluate as evaluate_stage
 from partwise_workers.stages import mesh as mesh_stage
 from partwise_workers.stages import remesh as remesh_stage
 from partwise_workers.stages.evaluate import EvaluateStage
+from partwise_workers.stages.picture import PictureStage
 from partwise_workers.stages.refine import RefineStage
 from partwise_workers.staging import sweep_staging
 from partwise_workers.tasks import StagedResult
@@ -35,14 +37,15 @@ MESH_ROLES = {mesh_stage.NAME: MeshRole.ORIGINAL, remesh_stage.NAME: MeshRole.WO
 def preprocess(
     workspace: Workspace, collection: Collection, on_progress: OnRunProgress, on_event: OnEvent = ignore_events
 ) -> RunProgress:
-    """Reads, checks, remeshes and describes every shape that is not yet described as it is configured to be.
+    """Reads, checks, remeshes, describes and pictures every shape that is not yet described as it is configured to be.
 
     Raises
     ------
     StoreError : a store is full or cannot be reached; what is finished is kept for the next run. So do all passes.
     WorkerError : Ray or its processes cannot be started. So do all passes.
     """
-    result = _run(workspace, collection, description_stages(workspace, collection), (), on_progress, on_event, _meshes)
+    stages = (*description_stages(workspace, collection), PictureStage(settings_of(collection).up))
+    result = _run(workspace, collection, stages, (), on_progress, on_event, _meshes)
     move_labels(workspace, collection, on_progress)
     return result
 

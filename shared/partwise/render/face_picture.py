@@ -7,9 +7,7 @@ from jaxtyping import Int32, UInt8
 
 from partwise.mesh import TriMesh
 from partwise.render.shaded import GAMMA, UpAxis, shade
-
-PICTURE_SIZE = 256
-"""Pixels along each side; a thumbnail has half as many."""
+from partwise.render.thumbnail import PICTURE_SIZE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,5 +1,6 @@
 """The block kinds of the standard stages. Vertices float32, faces uint32, histograms quantised (see `quantise`)."""
 
+from partwise.render.thumbnail import PICTURE_SIZE
 from partwise.store.blocks import BlockKind, Domain, Quantity
 
 N_BINS = 256
@@ -43,3 +44,12 @@ EVALUATION = BlockKind(
 """Column j of `probabilities` is the part `part_ids[j]`."""
 
 REFINEMENT = BlockKind("refinement", (Quantity("labels", Domain.FACE, "uint16"),))
+
+PICTURE = BlockKind(
+    "picture",
+    (
+        Quantity("face_ids", Domain.SHAPE, "int32", (PICTURE_SIZE, PICTURE_SIZE)),
+        Quantity("shading", Domain.SHAPE, "uint8", (PICTURE_SIZE, PICTURE_SIZE)),
+    ),
+)
+"""What thumbnails are coloured from: see `partwise.render.thumbnail`."""

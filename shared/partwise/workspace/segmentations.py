@@ -12,7 +12,7 @@ from partwise.workspace.choices import Segmentation as Segmentation
 from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
-MESH, REMESH, DESCRIBE, EVALUATE, REFINE = "mesh", "remesh", "describe", "evaluate", "refine"
+MESH, REMESH, DESCRIBE, PICTURE, EVALUATE, REFINE = "mesh", "remesh", "describe", "picture", "evaluate", "refine"
 """Names of the stages on record."""
 
 

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from partwise.store.records import Collection
-from partwise.workspace.segmentations import DESCRIBE, EVALUATE, MESH, REFINE, REMESH
+from partwise.workspace.segmentations import DESCRIBE, EVALUATE, MESH, PICTURE, REFINE, REMESH
 from partwise.workspace.workspace import Workspace
 
-STAGE_ORDER = (MESH, REMESH, DESCRIBE, EVALUATE, REFINE)
+STAGE_ORDER = (MESH, REMESH, DESCRIBE, PICTURE, EVALUATE, REFINE)
 
 
 @dataclass(frozen=True, slots=True)
