@@ -11,9 +11,10 @@ from starlette.middleware.cors import CORSMiddleware
 
 from partwise import __version__
 from partwise.workspace.workspace import open_workspace
+from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
 from partwise_service.problems import install_problems
-from partwise_service.routes import collections, parts, session
+from partwise_service.routes import arrays, collections, figures, parts, people, reviews, session, shapes
 from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
@@ -21,7 +22,16 @@ from partwise_service.service import Service
 from partwise_service.settings import ServiceSettings
 
 API_V1 = f"{API}v1"
-ROUTERS: Sequence[APIRouter] = (session.router, collections.router, parts.router)
+ROUTERS: Sequence[APIRouter] = (
+    session.router,
+    collections.router,
+    parts.router,
+    shapes.router,
+    arrays.router,
+    reviews.router,
+    figures.router,
+    people.router,
+)
 """Every resource of the API, in the order of the document. A route file is served once its router is in here."""
 UPLOAD_PATHS: Sequence[str] = (f"{API_V1}/uploads",)
 """Paths whose requests may be as large as `max_upload_bytes`."""
@@ -41,7 +51,7 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
         with ExitStack() as resources:
             workspace = resources.enter_context(open_workspace(settings.workspace))
             limiter = FailureLimiter(settings.max_auth_failures, settings.auth_window_s, clock)
-            app.state.service = Service(settings, workspace, limiter, RecentlyGood())
+            app.state.service = Service(settings, workspace, limiter, RecentlyGood(), EmbeddingMaps())
             yield
 
     app = FastAPI(

@@ -41,11 +41,15 @@ def not_modified(request: Request, tag: str, cache: str = REVALIDATE) -> Respons
 
 
 def safetensors_response(
-    request: Request, arrays: Mapping[str, np.ndarray], tag: str, cache: str = REVALIDATE
+    request: Request,
+    arrays: Mapping[str, np.ndarray],
+    tag: str,
+    cache: str = REVALIDATE,
+    metadata: Mapping[str, str] | None = None,
 ) -> Response:
     """The arrays as one safetensors file, gzipped if the caller takes that."""
     # safetensors writes an array's memory as it lies
-    data = save({name: np.ascontiguousarray(array) for name, array in arrays.items()})
+    data = save({name: np.ascontiguousarray(array) for name, array in arrays.items()}, dict(metadata or {}))
     headers = _headers(tag, cache)
     if len(data) >= _GZIP_FROM and _takes_gzip(request):
         data = gzip.compress(data, _GZIP_LEVEL, mtime=0)

@@ -97,10 +97,7 @@ def require(role: Role) -> Callable[[Identity], Identity]:
     """A dependency that lets callers of at least this role pass."""
 
     def at_least(caller: Caller) -> Identity:
-        if not caller.role.includes(role):
-            raise ProblemError(
-                ProblemKind.FORBIDDEN, f"This takes the role {role.value} but yours is {caller.role.value}."
-            )
+        require_role(caller, role)
         return caller
 
     return at_least
@@ -110,6 +107,12 @@ Annotator = Annotated[Identity, Depends(require(Role.ANNOTATOR))]
 Reviewer = Annotated[Identity, Depends(require(Role.REVIEWER))]
 Operator = Annotated[Identity, Depends(require(Role.OPERATOR))]
 Admin = Annotated[Identity, Depends(require(Role.ADMIN))]
+
+
+def require_role(caller: Identity, role: Role) -> None:
+    """403 unless the caller has at least this role."""
+    if not caller.role.includes(role):
+        raise ProblemError(ProblemKind.FORBIDDEN, f"This takes the role {role.value} but yours is {caller.role.value}.")
 
 
 def require_all_scope(caller: Identity) -> None:

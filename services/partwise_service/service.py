@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from partwise.workspace.workspace import Workspace
+from partwise_service.maps import EmbeddingMaps
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.settings import ServiceSettings
@@ -16,3 +17,4 @@ class Service:
     workspace: Workspace
     limiter: FailureLimiter
     recent: RecentlyGood
+    maps: EmbeddingMaps

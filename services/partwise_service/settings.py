@@ -38,7 +38,7 @@ class ServiceSettings(BaseModel):
     cors_origins: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()
     session_h: float = Field(12.0, gt=0, le=24 * 31)
-    login_code_s: float = Field(600.0, gt=0, le=24 * 3600)
+    login_code_s: float = Field(600.0, gt=0, le=3600)
     max_body_bytes: int = Field(4 * MEBIBYTE, ge=1024)
     max_upload_bytes: int = Field(1024 * MEBIBYTE, ge=1024)
     max_auth_failures: int = Field(20, ge=1)
@@ -68,7 +68,7 @@ class ServiceSettings(BaseModel):
         ------
         ConfigError : an unknown variable of the prefix, or a value of the wrong kind or out of range.
         """
-        given = {
+        given: dict[str, Any] = {
             name.removeprefix(PREFIX).lower(): value for name, value in environment.items() if name.startswith(PREFIX)
         }
         given |= {name: value for name, value in arguments.items() if value is not None}

@@ -1,6 +1,6 @@
 """/login, /logout, /me: a browser's session, and who one is."""
 
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
 from fastapi import APIRouter, Request, Response
 
@@ -18,6 +18,7 @@ from partwise_service.security.authentication import (
 from partwise_service.security.identity import Identity
 from partwise_service.service import Service
 
+HOUR_S = 3600.0
 router = APIRouter(tags=["session"])
 
 
@@ -46,14 +47,14 @@ def show_me(caller: Caller) -> Me:
 
 
 def _session(open_service: Service, login: Login, address: str) -> IssuedToken:
-    catalog, lasting = open_service.workspace.catalog, timedelta(hours=open_service.settings.session_h)
+    catalog, settings = open_service.workspace.catalog, open_service.settings
     if login.token is not None:
         identity = authenticate(open_service, Credential(login.token, is_session=False), address)
-        code = catalog.issue_login_code(identity.token.id, timedelta(seconds=open_service.settings.login_code_s)).code
+        code = catalog.issue_login_code(identity.token.id, settings.login_code_s).code
     else:
         code = login.code or ""
     refuse_too_many(open_service, address, code)
-    session = catalog.redeem_login_code(code, lasting)
+    session = catalog.exchange_login_code(code, settings.session_h * HOUR_S)
     if session is None:
         record_failure(open_service, address, code)
         raise refused()

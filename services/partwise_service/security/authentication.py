@@ -35,12 +35,14 @@ def authenticate(service: Service, credential: Credential, address: str) -> Iden
     known = _fingerprint(credential.secret)
     if not service.recent.holds(known):
         refuse_too_many(service, address, credential.secret)
-    token = None if len(credential.secret) > MAX_SECRET else service.workspace.catalog.authenticate(credential.secret)
+    catalog = service.workspace.catalog
+    token = None if len(credential.secret) > MAX_SECRET else catalog.authenticate(credential.secret)
     if token is None or token.is_session is not credential.is_session:
         service.recent.forget(known)
         record_failure(service, address, credential.secret)
         raise refused()
     service.recent.remember(known)
+    catalog.note_token_use(token.id)
     return Identity(token)
 
 

@@ -1,0 +1,94 @@
+"""/meshes/{mesh_hash}, /shapes/{shape_id}/labels, /shapes/{shape_id}/thumbnail: what browsers draw."""
+
+from typing import Annotated
+
+import numpy as np
+from fastapi import APIRouter, Query, Request, Response
+
+from partwise.errors import NotFoundError
+from partwise.render.thumbnail import colour_thumbnail
+from partwise.store.meshes import mesh_arrays
+from partwise.workspace.choices import Segmentation
+from partwise.workspace.pictures import find_picture
+from partwise.workspace.shapes import load_mesh
+from partwise_service.array_responses import (
+    IMMUTABLE,
+    PNG_RESPONSES,
+    SAFETENSORS_RESPONSES,
+    entity_tag,
+    not_modified,
+    png_response,
+    safetensors_response,
+)
+from partwise_service.dependencies import Caller, CatalogDep, ScopedShape, WorkspaceDep, visible_shape
+from partwise_service.schemas.base import MAX_ROW_ID, Hash
+from partwise_service.shown_labels import ShownLabels, labels_of_revision, shown_labels
+
+router = APIRouter(tags=["arrays"])
+ShapeQuery = Annotated[int, Query(ge=1, le=MAX_ROW_ID, description="A shape that has or had the mesh.")]
+
+
+@router.get("/meshes/{mesh_hash}", response_class=Response, responses=SAFETENSORS_RESPONSES)
+def get_mesh(
+    request: Request, caller: Caller, workspace: WorkspaceDep, mesh_hash: Hash, shape_id: ShapeQuery
+) -> Response:
+    """`vertices` (n, 3) float32 and `faces` (m, 3) uint32, in the order that labels follow. Never changes."""
+    visible_shape(workspace.catalog, caller, shape_id)
+    mesh = workspace.catalog.mesh(shape_id, mesh_hash)
+    tag = entity_tag("mesh", mesh_hash)
+    held = not_modified(request, tag, IMMUTABLE)
+    if held is not None:
+        return held
+    return safetensors_response(request, mesh_arrays(load_mesh(workspace, mesh)), tag, IMMUTABLE)
+
+
+@router.get("/shapes/{shape_id}/labels", response_class=Response, responses=SAFETENSORS_RESPONSES)
+def get_labels(
+    request: Request,
+    shape: ScopedShape,
+    workspace: WorkspaceDep,
+    segmentation: Segmentation = Segmentation.CONFIRMED,
+    revision: Annotated[int | None, Query(ge=1, le=MAX_ROW_ID, description="Instead: this revision's.")] = None,
+) -> Response:
+    """`labels` (m,) uint16: a part's id for each face of the mesh that the metadata names, 0 for none."""
+    found = (
+        shown_labels(workspace, shape, segmentation)
+        if revision is None
+        else labels_of_revision(workspace, shape, revision)
+    )
+    if found is None:
+        raise NotFoundError(f"shape {shape.id} has no {segmentation.value} labels on its present mesh")
+    tag = entity_tag("labels", found.identity)
+    held = not_modified(request, tag)
+    return held or safetensors_response(request, {"labels": found.read()}, tag, metadata=found.metadata)
+
+
+@router.get("/shapes/{shape_id}/thumbnail", response_class=Response, responses=PNG_RESPONSES)
+def get_thumbnail(
+    request: Request,
+    shape: ScopedShape,
+    workspace: WorkspaceDep,
+    catalog: CatalogDep,
+    segmentation: Annotated[Segmentation | None, Query(description="Grey without one, or where there is none.")] = None,
+) -> Response:
+    """PNG of the shape in the colours of its labels, on a transparent background."""
+    picture = find_picture(workspace, shape)
+    labels = None if segmentation is None else shown_labels(workspace, shape, segmentation)
+    if labels is not None and labels.mesh_hash != picture.mesh_hash:
+        labels = None
+    colours = {part.id: part.colour for part in catalog.parts(shape.collection_id).parts}
+    tag = entity_tag("thumbnail", picture.identity, labels and labels.identity, sorted(colours.items()))
+    held = not_modified(request, tag)
+    if held is not None:
+        return held
+    face_ids, shading = picture.read()
+    ids = _labels_or_none(labels, int(face_ids.max()) + 1)
+    return png_response(colour_thumbnail(face_ids, shading, ids, {k: _rgb(v) for k, v in colours.items()}), tag)
+
+
+def _labels_or_none(labels: ShownLabels | None, n_faces: int) -> np.ndarray:
+    return np.zeros(max(n_faces, 1), dtype=np.uint16) if labels is None else labels.read()
+
+
+def _rgb(colour: str) -> tuple[int, int, int]:
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
