@@ -2,6 +2,7 @@
 
 from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 from typing import Protocol
 
 from partwise.store.records import (
@@ -77,6 +78,14 @@ class StageCatalog(Protocol):
 
     def stage_counts(self, collection_id: int) -> Sequence[StageCount]:
         """How far each stage is, by stage name."""
+        ...
+
+    def stage_paces(self, collection_id: int, since: datetime) -> Mapping[str, int]:
+        """How many shapes each stage was done for since then; stages that did none are left out."""
+        ...
+
+    def failure_kinds(self, collection_id: int) -> Mapping[FailureKind, int]:
+        """How many failed runs there are of each kind; every kind is a key."""
         ...
 
     def block(self, name: str) -> Block: ...

@@ -2,10 +2,11 @@
 
 from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import blocks, stages
+from partwise.store.sql import blocks, figures, stages
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -57,6 +58,14 @@ class SqlStageCatalog(SqlBase):
     def stage_counts(self, collection_id: int) -> Sequence[r.StageCount]:
         with reading(self._engine) as connection:
             return stages.stage_counts(connection, collection_id)
+
+    def stage_paces(self, collection_id: int, since: datetime) -> Mapping[str, int]:
+        with reading(self._engine) as connection:
+            return figures.stage_paces(connection, collection_id, since)
+
+    def failure_kinds(self, collection_id: int) -> Mapping[r.FailureKind, int]:
+        with reading(self._engine) as connection:
+            return figures.failure_kinds(connection, collection_id)
 
     def block(self, name: str) -> r.Block:
         with reading(self._engine) as connection:
