@@ -38,9 +38,11 @@ def _example(command: Any) -> list[str]:
 
 def test_the_commands_are_these() -> None:
     assert set(COMMANDS) == {
-        "init", "settings", "ingest", "preprocess", "retry", "status", "gc", "migrate", "import", "confirm", "export", "train",
+        "init", "settings", "ingest", "preprocess", "retry", "status", "gc", "migrate", "import", "confirm", "export",
+        "train",
         "evaluate", "refine", "select", "queue", "serve", "token", "token create", "token list",
-        "token revoke", "reviews", "reviews list", "reviews accept", "simulate", "demo", "doctor", "version", "bench", "bench describe",
+        "token revoke", "reviews", "reviews list", "reviews accept", "simulate", "demo", "doctor", "version", "bench",
+        "bench describe",
         "bench loo", "bench remeshing", "bench calibration", "bench scheduling", "bench throughput", "bench toolbox",
     }  # fmt: skip
 
