@@ -20,6 +20,7 @@ from partwise.workspace.relabel import (
     PendingMove,
     commit_move,
     compute_move,
+    forget_failed_moves,
     move_here,
     pending_moves,
     record_failed_move,
@@ -50,6 +51,7 @@ def move_labels(workspace: Workspace, collection: Collection, on_progress: OnRun
     n_total = sum(1 for _ in pending_moves(workspace, collection))
     if n_total <= FEW:
         return move_here(workspace, collection, on_progress)
+    forget_failed_moves(workspace, collection)
     with connected():
         return _Mover(workspace, on_progress, n_total).run(collection)
 

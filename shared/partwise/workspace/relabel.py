@@ -114,16 +114,19 @@ def commit_move(workspace: Workspace, move: PendingMove, moved: MovedLabels) -> 
     detail = {"agreement": moved.agreement, "moved_from": source.mesh_hash}
     review = NewReview(ReviewReason.MAP_BACK, detail) if is_doubtful else None
     try:
-        committed = workspace.catalog.add_revision(child, review)
+        return workspace.catalog.add_revision(child, review)
     except ConflictError:
         return None
-    workspace.catalog.clear_failures(move.shape.collection_id, RELABEL, [move.shape.id])
-    return committed
 
 
 def record_failed_move(workspace: Workspace, move: PendingMove, reason: str) -> None:
     """Names the shape and the reason, one line, among the failures; the next preprocessing tries again."""
     workspace.catalog.record_failure(NewFailure(move.shape.id, RELABEL, move.new_mesh.mesh_hash, reason))
+
+
+def forget_failed_moves(workspace: Workspace, collection: Collection) -> None:
+    """Before all missing moves are tried again: shapes that need none any more are not named as failed for ever."""
+    workspace.catalog.clear_failures(collection.id, RELABEL)
 
 
 def move_here(workspace: Workspace, collection: Collection, on_progress: OnRunProgress = lambda _: None) -> MoveReport:
@@ -133,6 +136,7 @@ def move_here(workspace: Workspace, collection: Collection, on_progress: OnRunPr
     ------
     StoreError : a store is full or cannot be reached.
     """
+    forget_failed_moves(workspace, collection)
     n_total = sum(1 for _ in pending_moves(workspace, collection))
     n_moved = n_in_review = n_failed = 0
     for move in pending_moves(workspace, collection):

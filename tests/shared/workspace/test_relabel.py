@@ -243,6 +243,17 @@ def test_a_shape_that_cannot_be_moved_is_named_and_tried_again(
     assert labelled.workspace.catalog.failures(labelled.collection.id) == []
 
 
+def test_a_shape_that_is_back_on_the_mesh_of_its_labels_is_not_named_any_more(labelled: Labelled) -> None:
+    key = kept_mesh_key(FINE.content_hash())
+    kept = labelled.workspace.arrays.get_bytes(key)
+    labelled.workspace.arrays.put_bytes(key, b"damaged")
+    assert labelled.move().n_failed == 1
+    labelled.workspace.arrays.put_bytes(key, kept)
+    labelled.publish(FINE, "fine again")
+    assert labelled.move() == MoveReport(0, 0, 0)
+    assert labelled.workspace.catalog.failures(labelled.collection.id) == []
+
+
 def test_progress_is_told(labelled: Labelled) -> None:
     told: list[tuple[int, int, int]] = []
     move_here(labelled.workspace, labelled.collection, lambda p: told.append((p.n_done, p.n_failed, p.n_total)))
