@@ -1,6 +1,7 @@
 """What actors do with tasks, without Ray around them."""
 
 import os
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
@@ -19,6 +20,10 @@ def start(bench) -> _StageWorker:
     worker = _StageWorker(bench.workspace.array_url, bench.stages)
     worker.start()
     return worker
+
+
+def seconds_of(results: Iterable[StagedResult]) -> dict[str, float]:
+    return {result.staged_as: result.seconds for result in results}
 
 
 def task_of(bench, key: str = "a.off") -> ShapeTask:
@@ -163,17 +168,28 @@ def test_what_a_refusing_stage_has_tried_goes_on_record() -> None:
 def test_packing_leaves_out_what_another_run_took(make_bench) -> None:
     bench = make_bench({"a.off": "", "b.off": ""})
     worker = start(bench)
-    names = [run(worker, task)[0].staged_as for task in bench.plan()]
-    bench.workspace.arrays.delete_staged(names[0])
-    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, names)
-    assert packed.names == (names[1],)
+    seconds = seconds_of(run(worker, task)[0] for task in bench.plan())
+    gone, there = seconds
+    bench.workspace.arrays.delete_staged(gone)
+    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, seconds)
+    assert packed.names == (there,)
     assert packed.address is not None
     assert packed.address.n_shapes == 1
 
 
+def test_a_result_that_another_process_has_replaced_is_not_packed_under_this_ones_summary(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    (first, _) = run(start(bench), task_of(bench))
+    bench.workspace.arrays.delete_staged(first.staged_as)
+    (again, _) = run(start(bench), task_of(bench))
+    packer = _Packer(bench.workspace.array_url)
+    assert packer.pack(bench.stages[0].block_kind, seconds_of([first])).names == ()
+    assert packer.pack(bench.stages[0].block_kind, seconds_of([again])).names == (first.staged_as,)
+
+
 def test_packing_nothing_writes_no_block(make_bench) -> None:
     bench = make_bench({"a.off": ""})
-    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, ["first/1-gone"])
+    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, {"first/1-gone": 0.5})
     assert packed.address is None
     assert bench.workspace.arrays.block_names() == []
 
@@ -181,7 +197,7 @@ def test_packing_nothing_writes_no_block(make_bench) -> None:
 def test_a_packed_block_has_the_arrays_and_no_account(make_bench) -> None:
     bench = make_bench({"a.off": ""})
     (first, _) = run(start(bench), task_of(bench))
-    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, [first.staged_as])
+    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, seconds_of([first]))
     assert packed.address is not None
     arrays = bench.workspace.arrays
     expected = np.frombuffer(b"this is a.off\n\n", dtype=np.uint8)

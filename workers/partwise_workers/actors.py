@@ -9,6 +9,7 @@ import uuid
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import ray
@@ -182,9 +183,14 @@ class _StageWorker:
 
 
 def _staged_result(call: StageCall, made: Mapping[str, np.ndarray]) -> StagedResult:
-    account = json.loads(made[ACCOUNT].tobytes())
+    account = _account(made)
     n_bytes = sum(array.nbytes for array in made.values())
     return StagedResult(call.stage, call.key, str(call.name), n_bytes, account["seconds"], account["summary"])
+
+
+def _account(made: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    account: dict[str, Any] = json.loads(made[ACCOUNT].tobytes())
+    return account
 
 
 def _failure(call: StageCall, error: BaseException, seconds: float) -> StageFailure:
@@ -218,17 +224,25 @@ class _Packer:
             self._opened = open_array_store(self._array_url)
         return self._opened
 
-    def pack(self, kind: BlockKind, names: Sequence[str]) -> Packed:
+    def pack(self, kind: BlockKind, seconds: Mapping[str, float]) -> Packed:
         """Writes one block of the staged results, in order. It stays invisible until the catalog names it.
 
-        Results that are no longer staged are left out: another run on the same workspace has published them.
+        Results that are no longer staged are left out: another run on the same workspace has published them. So are
+        those that somebody has replaced, such as an actor of a driver that died: the arrays of one try must never be
+        put on record with the summary of another.
+
+        Parameters
+        ----------
+        seconds : of each result by the name it is staged as; no two tries take the same to the last digit.
         """
         found: list[str] = []
         shapes: list[Mapping[str, np.ndarray]] = []
-        for name in names:
+        for name in seconds:
             try:
                 staged = self._arrays.read_staged(name)
             except NotFoundError:
+                continue
+            if _account(staged)["seconds"] != seconds[name]:
                 continue
             found.append(name)
             shapes.append({quantity: array for quantity, array in staged.items() if quantity != ACCOUNT})

@@ -164,8 +164,8 @@ class Publisher:
     def _pack(self, stage: str, ready: tuple[_Ready, ...], attempt: int = 1) -> None:
         if self._packer is None:
             self._packer = self._new_packer()
-        names = [each.result.staged_as for each in ready]
-        reference = self._packer.pack.remote(self._kinds[stage], names)
+        seconds = {each.result.staged_as: each.result.seconds for each in ready}
+        reference = self._packer.pack.remote(self._kinds[stage], seconds)
         self._packing[reference] = _Packing(stage, ready, self._packer, attempt)
 
     def _take(self, reference: Reference) -> None:
@@ -212,11 +212,11 @@ class Publisher:
             self._arrays.delete_staged(name)
 
     def _account_for(self, stage: str, gone: Sequence[_Ready]) -> None:
-        """Results that left staging before they were packed: another run on this workspace has published them."""
+        """Results that left staging, or were replaced there, before they were packed: by another run as a rule."""
         runs = self._catalog.stage_runs([each.shape_id for each in gone], stage) if gone else {}
         lost = [each.shape_id for each in gone if _key(runs.get(each.shape_id)) != each.result.key]
         if lost:
-            logger.warning("staged results are gone; run again", extra={"stage": stage, "shapes": lost})
+            logger.warning("staged results are gone or replaced; run again", extra={"stage": stage, "shapes": lost})
 
 
 def _run(stage: str, ready: _Ready, row: int) -> NewStageRun:
