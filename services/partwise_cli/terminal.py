@@ -4,7 +4,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import typer
 from rich.console import Console
@@ -20,6 +20,9 @@ from rich.table import Table
 from rich.text import Text
 
 from partwise.workspace.progress import RunProgress
+
+if TYPE_CHECKING:
+    from partwise.workspace.relabel import MoveReport
 
 PLAIN_STEP = 0.25
 """Share of the work between two lines where there is no terminal."""
@@ -53,6 +56,15 @@ def warning_lines(messages: Sequence[str], total: int | None = None, most: int =
 def counted(n: int, noun: str) -> str:
     """`1 shape`, `2 shapes`, `1,000 shapes`."""
     return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
+
+
+def moved_line(moves: "MoveReport") -> None:
+    """What became of labels whose shapes have another mesh now; nothing where there were none."""
+    if moves.n_moved or moves.n_failed:
+        typer.echo(
+            f"labels of {counted(moves.n_moved, 'shape')} moved to the working mesh: "
+            f"{moves.n_in_review:,} to be reviewed, {moves.n_failed:,} failed"
+        )
 
 
 def print_json(value: object) -> None:

@@ -78,5 +78,7 @@ def test_few_moves_need_no_ray(remeshed, monkeypatch: pytest.MonkeyPatch) -> Non
 def test_preprocessing_ends_with_moving_labels(remeshed, monkeypatch: pytest.MonkeyPatch) -> None:
     workspace, collection, _ = remeshed
     monkeypatch.setattr(passes, "_run", lambda *_: RunProgress(0, 0, 0))
-    assert passes.preprocess(workspace, collection, lambda _: None) == RunProgress(0, 0, 0)
+    told: list[MoveReport] = []
+    progress = passes.preprocess(workspace, collection, lambda _: None, on_moved=told.append)
+    assert (progress, told) == (RunProgress(0, 0, 0), [MoveReport(N_SHAPES, 1, 0)])
     assert len(workspace.catalog.open_reviews(collection.id)) == 1

@@ -3,13 +3,14 @@
 What happens is counted in Ray's metrics, and told to `on_event`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from partwise.errors import NotFoundError
 from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.records import Collection, MeshRole, Model, NewMesh, NewScore
 from partwise.workspace.progress import OnRunProgress, RunProgress
+from partwise.workspace.relabel import MoveReport
 from partwise.workspace.settings import settings_of
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected
@@ -35,9 +36,15 @@ MESH_ROLES = {mesh_stage.NAME: MeshRole.ORIGINAL, remesh_stage.NAME: MeshRole.WO
 
 
 def preprocess(
-    workspace: Workspace, collection: Collection, on_progress: OnRunProgress, on_event: OnEvent = ignore_events
+    workspace: Workspace,
+    collection: Collection,
+    on_progress: OnRunProgress,
+    on_event: OnEvent = ignore_events,
+    on_moved: Callable[[MoveReport], None] = lambda _: None,
 ) -> RunProgress:
     """Reads, checks, remeshes, describes and pictures every shape that is not yet described as it is configured to be.
+
+    Then labels move to the meshes that are new; `on_moved` is told how that went.
 
     Raises
     ------
@@ -46,7 +53,7 @@ def preprocess(
     """
     stages = (*description_stages(workspace, collection), PictureStage(settings_of(collection).up))
     result = _run(workspace, collection, stages, (), on_progress, on_event, _meshes)
-    move_labels(workspace, collection, on_progress)
+    on_moved(move_labels(workspace, collection, on_progress))
     return result
 
 

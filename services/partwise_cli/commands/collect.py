@@ -10,9 +10,10 @@ import typer
 from partwise_cli.arguments import CollectionOption, JsonOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
 from partwise_cli.run_view import run_progress
-from partwise_cli.terminal import counted, print_json, print_table, shape_progress, warning_lines
+from partwise_cli.terminal import counted, moved_line, print_json, print_table, shape_progress, warning_lines
 
 if TYPE_CHECKING:
+    from partwise.workspace.relabel import MoveReport
     from partwise.workspace.status import CollectionStatus
 
 MAX_REASONS = 20
@@ -107,18 +108,22 @@ def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> No
     from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import preprocess as run
 
+    moves: list[MoveReport] = []
     with open_workspace(ws) as workspace:
         found = find_collection(workspace, collection)
         with run_progress("preprocess") as tally:
-            result = run(workspace, found, tally.on_progress, tally.on_event)
+            result = run(workspace, found, tally.on_progress, tally.on_event, moves.append)
         state = collection_status(workspace, found, MAX_REASONS)
-    if result.n_failed:
+    has_failed = result.n_failed > 0 or any(report.n_failed for report in moves)
+    if has_failed:
         _report_failures(state)
     if result.n_total:
         typer.echo(f"{counted(result.n_done, 'shape')} preprocessed, {result.n_failed:,} failed")
     else:
         typer.echo(_nothing_to_do(state))
-    if result.n_failed:
+    for report in moves:
+        moved_line(report)
+    if has_failed:
         raise typer.Exit(SOME_FAILED)
 
 

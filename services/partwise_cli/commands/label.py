@@ -10,7 +10,7 @@ from partwise.store.records import MeshRole, RevisionKind
 from partwise.workspace.choices import ExportFormat, PointSampling, Segmentation
 from partwise_cli.arguments import CollectionOption, WorkspaceArgument
 from partwise_cli.failures import SOME_FAILED
-from partwise_cli.terminal import counted, shape_progress, warning_lines
+from partwise_cli.terminal import counted, moved_line, shape_progress, warning_lines
 
 AuthorOption = Annotated[str, typer.Option(help="Whose work the labels are.")]
 
@@ -54,11 +54,7 @@ def import_(
         f"{report.n_unchanged:,} unchanged, {counted(len(report.refused), 'file')} refused, "
         f"{counted(report.n_unlabelled, 'shape')} without a file"
     )
-    if report.moves.n_moved or report.moves.n_failed:
-        typer.echo(
-            f"labels of {counted(report.moves.n_moved, 'shape')} moved to the working mesh: "
-            f"{report.moves.n_in_review:,} to be reviewed, {report.moves.n_failed:,} failed"
-        )
+    moved_line(report.moves)
     if report.refused or report.moves.n_failed:
         raise typer.Exit(SOME_FAILED)
 

@@ -11,6 +11,7 @@ from partwise.io.write import write_mesh
 from partwise.mesh import TriMesh
 from partwise.store.records import FailureKind, NewFailure
 from partwise.workspace.progress import RunProgress
+from partwise.workspace.relabel import RELABEL, MoveReport
 from partwise.workspace.workspace import open_workspace
 from partwise_cli.commands.collect import FailureReason
 from partwise_workers import passes
@@ -141,6 +142,24 @@ def test_preprocess_says_why_shapes_failed(invoke, ingested: Path, monkeypatch: 
     monkeypatch.setattr(passes, "preprocess", lambda *_: RunProgress(2, 1, 3))
     result = invoke("preprocess", ingested)
     assert result.stderr == "warning: a.off: mesh: faces must be non-empty; is the file truncated?\n"
+
+
+def test_preprocess_says_which_labels_moved_and_ends_badly_where_some_could_not(
+    invoke, ingested: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def move(*arguments: object) -> RunProgress:
+        arguments[-1](MoveReport(n_moved=3, n_in_review=1, n_failed=1))  # type: ignore[operator]
+        return RunProgress(4, 0, 4)
+
+    _fail(ingested, "a.off", RELABEL, "mesh 0123… is no longer stored; preprocess shape 1 again")
+    monkeypatch.setattr(passes, "preprocess", move)
+    result = invoke("preprocess", ingested)
+    assert result.stdout.splitlines() == [
+        "4 shapes preprocessed, 0 failed",
+        "labels of 3 shapes moved to the working mesh: 1 to be reviewed, 1 failed",
+    ]
+    assert result.stderr.startswith("warning: a.off: relabel: mesh 0123")
+    assert result.exit_code == 1
 
 
 def test_preprocess_reminds_of_shapes_that_failed_before(
