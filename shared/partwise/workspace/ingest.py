@@ -1,6 +1,8 @@
 """Ingest: a row and a content hash per file, and a copy of the file in the array store."""
 
 import hashlib
+import logging
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
@@ -11,6 +13,8 @@ from partwise.io.read import MESH_SUFFIXES, read_bytes
 from partwise.store.records import Collection, IngestOutcome, NewShape
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
+
+logger = logging.getLogger(__name__)
 
 BATCH = 256
 """Files whose rows are committed together."""
@@ -80,11 +84,21 @@ def ingest_folder(
 
 
 def mesh_files(folder: Path) -> Iterator[Path]:
-    """Mesh files below a folder, in order of path; links, hidden files and hidden folders are passed over."""
-    for path in sorted(folder.rglob("*")):
-        is_hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if path.suffix.lower() in MESH_SUFFIXES and path.is_file() and not path.is_symlink() and not is_hidden:
-            yield path
+    """Mesh files below a folder, in order of path; links and what is hidden are passed over, unreadable folders too.
+
+    One folder is listed at a time: collections come with many more files than meshes.
+    """
+    try:
+        with os.scandir(folder) as entries:
+            seen = sorted((entry for entry in entries if not entry.name.startswith(".")), key=lambda entry: entry.name)
+    except PermissionError:
+        logger.warning("a folder cannot be read", extra={"folder": str(folder)})
+        return
+    for entry in seen:
+        if entry.is_dir(follow_symlinks=False):
+            yield from mesh_files(folder / entry.name)
+        elif entry.is_file(follow_symlinks=False) and Path(entry.name).suffix.lower() in MESH_SUFFIXES:
+            yield folder / entry.name
 
 
 def _outside(paths: Iterator[Path], array_url: str) -> Iterator[Path]:

@@ -117,6 +117,13 @@ def test_a_file_over_the_limit_is_refused(
     assert "huge.stl" in report.refused[0].reason
 
 
+def test_files_come_in_order_of_their_paths(tmp_path: Path) -> None:
+    for name in ("b/z.off", "b.off", "a/c/x.stl", "a/c.ply", "a.off", "B.off", "a-b/y.off"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    assert list(mesh_files(tmp_path)) == sorted(path for path in tmp_path.rglob("*") if path.is_file())
+
+
 def test_links_and_hidden_files_are_passed_over(tmp_path: Path, folder: Path) -> None:
     (folder / "link.off").symlink_to(folder / "a.off")
     (folder / ".hidden.off").write_bytes(b"OFF")
