@@ -116,7 +116,8 @@ def _rate(per_min: float) -> str:
 
 
 def _state(tally: RunTally) -> str:
-    parts = [f"{tally.n_in_flight:,} in flight"] if tally.n_in_flight else []
+    is_over = tally.n_seen == tally.progress.n_total  # the last shape is counted before it is out of the run's hands
+    parts = [f"{tally.n_in_flight:,} in flight"] if tally.n_in_flight and not is_over else []
     if tally.progress.n_failed:
         kinds = ", ".join(f"{kind.value} {n:,}" for kind, n in tally.failures.most_common())
         parts.append(f"{tally.progress.n_failed:,} failed" + (f" ({kinds})" if kinds else ""))

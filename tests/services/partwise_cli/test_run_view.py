@@ -162,6 +162,12 @@ def test_the_end_is_told_once(lines: RunLines, clock: Clock, printed: list[str])
     assert printed == ["preprocess: 2 of 2 · 20 shapes/min · in 6 s"]
 
 
+def test_nothing_is_in_flight_at_the_end(lines: RunLines, clock: Clock, printed: list[str]) -> None:
+    lines.on_event(InFlight(1))
+    advance(lines, clock, 6, 2, n_total=2)
+    assert printed == ["preprocess: 2 of 2 · in 6 s"]
+
+
 def test_where_a_run_ends_early_is_told(lines: RunLines, clock: Clock, printed: list[str]) -> None:
     advance(lines, clock, 0, 0, n_total=4)
     advance(lines, clock, 3, 1, n_total=4)
