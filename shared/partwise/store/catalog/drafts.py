@@ -58,6 +58,13 @@ class DraftCatalog(Protocol):
         """A page of a draft's strokes by sequence."""
         ...
 
+    def acknowledge_head(self, draft_id: int, person_id: int, revision_id: int) -> Draft:
+        """Record that the person has seen labels that others confirmed meanwhile, and goes on regardless.
+
+        Raises `ConflictError` as for strokes, `StaleDraftError` if that revision is not the newest.
+        """
+        ...
+
     def discard_draft(self, draft_id: int, person_id: int) -> Draft:
         """Close a draft without labels; its strokes stay on record. `ConflictError` as for strokes."""
         ...
@@ -69,9 +76,9 @@ class DraftCatalog(Protocol):
         the draft's purpose: see `LeasePurpose`. A lease that expired is taken up again if nobody else has the place.
 
         Raises `StaleDraftError` if strokes came in since, if other labels of the shape were confirmed since the draft
-        was begun, or if `consensus` is not over the answers on record (then compare again); `ConflictError` if the
-        draft is another person's, was discarded or confirmed otherwise, or its place is another's now (it stays open);
-        `LabelError` for labels that do not fit.
+        was begun (see `acknowledge_head`), or if `consensus` is not over the answers on record (then compare again);
+        `ConflictError` if the draft is another person's, was discarded or confirmed otherwise, or its place is
+        another's now (it stays open); `LabelError` for labels that do not fit.
         """
         ...
 

@@ -105,7 +105,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NewConfirmation:
-    """A draft to be confirmed with the labels (m,) that its first `n_strokes` strokes leave, checked and folded.
+    """A draft to be confirmed with the labels (m,) that its `n_strokes` strokes leave, checked under a schema version.
 
     consensus : needed exactly when these are the last labels that an independent round waits for.
     blind_check : for a draft whose purpose is blind, if the reference is on the draft's mesh.
@@ -115,6 +115,7 @@ class NewConfirmation:
     person_id: int
     n_strokes: int
     labels: Integer[np.ndarray, " m"]
+    schema_version: int
     consensus: NewConsensus | None = None
     blind_check: NewBlindCheck | None = None
 

@@ -38,6 +38,7 @@ class Draft:
 
     slot, round, purpose : of the lease it was opened or last resumed under.
     n_strokes : strokes on record, which is the sequence of the next one.
+    seen_revision : the shape's newest shown labels that the person knows of; newer ones refuse the confirmation.
     labels_sha256 : checksum of what was confirmed.
     """
 
@@ -51,6 +52,7 @@ class Draft:
     mesh_hash: str
     base_revision: int | None
     base_sha256: str
+    seen_revision: int | None
     schema_version: int
     n_strokes: int
     created_at: datetime

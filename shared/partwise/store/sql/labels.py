@@ -15,12 +15,16 @@ from partwise.labels.checks import checked_labels
 from partwise.labels.encoding import EncodedLabels, decode_labels, encode_labels
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
-from partwise.store.records import LabelRevision, NewRevision, RevisionKind
-from partwise.store.reviews import NewReview, RevisionOrigin
+from partwise.store.records import EventKind, LabelRevision, NewEvent, NewRevision, RevisionKind, ShapeState
+from partwise.store.reviews import NewReview, Review, RevisionOrigin
 from partwise.store.sql.collections import append_audit, parts, schema_version
 from partwise.store.sql.dialect import batches
+from partwise.store.sql.events import append_events
+from partwise.store.sql.facets import note_reference, renew_facets, renew_head_parts
+from partwise.store.sql.places import close_places
 from partwise.store.sql.reviews import MACHINE, add_review, lock_labels, succeed_reviews
 from partwise.store.sql.shapes import refuse_unknown_shapes
+from partwise.store.sql.tally import count_confirmed
 from partwise.unlabelled import NO_PART_ID
 
 _COLUMNS = tuple(column for column in t.label_revision.c if column.name != "labels")  # the blob only when asked for
@@ -29,6 +33,15 @@ _COLUMNS = tuple(column for column in t.label_revision.c if column.name != "labe
 def add_revision(
     connection: Connection, revision: NewRevision, new_review: NewReview | None, now: datetime
 ) -> LabelRevision:
+    committed, _, events = commit_revision(connection, revision, new_review, now)
+    append_events(connection, events, now)
+    return committed
+
+
+def commit_revision(
+    connection: Connection, revision: NewRevision, new_review: NewReview | None, now: datetime
+) -> tuple[LabelRevision, Review | None, list[NewEvent]]:
+    """As `add_revision`; the events are the caller's to add, last."""
     shape = refuse_unknown_shapes(connection, [revision.shape_id])[revision.shape_id]
     author = connection.execute(select(t.person.c.name).where(t.person.c.id == revision.author_id)).scalar()
     if author is None:
@@ -55,26 +68,46 @@ def add_revision(
     origin = None if revision.origin is None else asdict(revision.origin)
     statement = insert(t.label_revision).values(**values, origin=origin, labels=encoded.blob)
     revision_id = connection.execute(statement.returning(t.label_revision.c.id)).scalar_one()
-    _note_parts(connection, shape.collection_id, revision_id, checked)
+    part_ids = _note_parts(connection, shape.collection_id, revision_id, checked)
     committed = LabelRevision(**{**values, "id": revision_id, "kind": revision.kind, "origin": revision.origin})
     if revision.kind in SHOWN_KINDS:
         succeed_reviews(connection, committed, now)
-    if new_review is not None:
-        add_review(connection, revision_id, new_review, now)
+    review = None if new_review is None else add_review(connection, revision_id, new_review, now)
     detail = {"kind": values["kind"], "shape_id": revision.shape_id, "sha256": encoded.sha256}
     actor, action = (author, "label") if origin is None else (MACHINE, "move labels")
     append_audit(connection, actor, action, f"label_revision {revision_id}", detail | (origin or {}), now)
-    return committed
+    return committed, review, _after_commit(connection, committed, shape.collection_id, part_ids, now)
 
 
-def _note_parts(connection: Connection, collection_id: int, revision_id: int, labels: UInt16[np.ndarray, " m"]) -> None:
-    rows = [
-        {"collection_id": collection_id, "part_id": part_id, "revision_id": revision_id}
-        for part_id in np.unique(labels).tolist()
-        if part_id != NO_PART_ID
-    ]
+def _after_commit(
+    connection: Connection, committed: LabelRevision, collection_id: int, part_ids: Sequence[int], now: datetime
+) -> list[NewEvent]:
+    """Brings the table of shapes, the queue and the next training up to date with a revision."""
+    if committed.kind is RevisionKind.REFERENCE:
+        note_reference(connection, collection_id, committed.shape_id, committed.id)
+        return []
+    renew_head_parts(connection, collection_id, committed.shape_id, part_ids)
+    renew_facets(connection, [committed.shape_id])
+    state = connection.execute(
+        select(t.shape_facet.c.state).where(t.shape_facet.c.shape_id == committed.shape_id)
+    ).scalar_one()
+    events = []
+    if committed.origin is None:  # labels that merely moved change nothing about what is wanted of people
+        close_places(connection, committed.shape_id)
+        if committed.kind is RevisionKind.HUMAN and state == ShapeState.CONFIRMED:
+            events = count_confirmed(connection, collection_id, now)
+    payload = {"shape_id": committed.shape_id, "state": state, "revision_id": committed.id}
+    return [*events, NewEvent(EventKind.SHAPE, collection_id, payload)]
+
+
+def _note_parts(
+    connection: Connection, collection_id: int, revision_id: int, labels: UInt16[np.ndarray, " m"]
+) -> list[int]:
+    part_ids = [part_id for part_id in np.unique(labels).tolist() if part_id != NO_PART_ID]
+    rows = [{"collection_id": collection_id, "part_id": part_id, "revision_id": revision_id} for part_id in part_ids]
     if rows:
         connection.execute(insert(t.label_part), rows)
+    return part_ids
 
 
 def _n_faces(connection: Connection, revision: NewRevision) -> int:

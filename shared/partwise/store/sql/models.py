@@ -20,6 +20,7 @@ from partwise.store.records import (
 )
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import batches, insert_for
+from partwise.store.sql.places import set_ranks
 from partwise.store.sql.shapes import refuse_unknown_shapes
 from partwise.store.sql.state import shape_state
 
@@ -123,6 +124,8 @@ def replace_first_shapes(connection: Connection, collection_id: int, first_shape
     ]
     if rows:
         connection.execute(insert(t.first_shape), rows)
+    if not models(connection, collection_id, limit=1):  # from then on its scores say who is next
+        set_ranks(connection, collection_id, {first.shape_id: first.ordinal + 1 for first in first_shapes})
 
 
 def first_shapes(connection: Connection, collection_id: int) -> Sequence[FirstShape]:

@@ -9,15 +9,22 @@ from typing import Any
 
 from sqlalchemy import Connection, Row, insert, select, update
 
-from partwise.errors import ConflictError, LabelError, NotFoundError
+from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
-from partwise.store.records import LabelRevision
+from partwise.store.records import EventKind, LabelRevision, NewEvent, ShapeState
 from partwise.store.reviews import NewReview, Review, ReviewOutcome, ReviewReason
 from partwise.store.sql.collections import append_audit, schema_version
+from partwise.store.sql.events import append_events
+from partwise.store.sql.facets import renew_facets
+from partwise.store.sql.leases import person_name
+from partwise.store.sql.places import close_places, put_first
+from partwise.store.sql.tally import count_confirmed
 
 MACHINE = "partwise"
 """The actor in the audit trail of what nobody asked for in person."""
+
+_NOTE_LENGTH = 2_000
 
 
 def add_review(connection: Connection, revision_id: int, new: NewReview, now: datetime) -> Review:
@@ -84,21 +91,73 @@ def reviews(connection: Connection, shape_id: int) -> Sequence[Review]:
     return [_review(row) for row in connection.execute(query)]
 
 
+def open_review(connection: Connection, revision_id: int, new: NewReview, now: datetime) -> Review:
+    review = add_review(connection, revision_id, new, now)
+    append_events(connection, [_renewed(connection, review)], now)
+    return review
+
+
 def accept_review(connection: Connection, review_id: int, person_id: int, now: datetime) -> Review:
-    person = connection.execute(select(t.person.c.name).where(t.person.c.id == person_id)).scalar()
-    if person is None:
-        raise NotFoundError(f"there is no person with id {person_id}; add them first")
-    found = connection.execute(select(t.review).where(t.review.c.id == review_id).with_for_update()).first()
-    if found is None:
+    person = person_name(connection, person_id)
+    found = _open_review(connection, review_id)
+    review = _resolved(connection, review_id, person_id, ReviewOutcome.ACCEPTED, now)
+    detail = {"review_id": review_id, "reason": found.reason.value, "shape_id": found.shape_id}
+    append_audit(connection, person, "accept labels", f"label_revision {found.revision_id}", detail, now)
+    if found.reason is ReviewReason.REWORK:
+        close_places(connection, found.shape_id)
+    event = _renewed(connection, review)
+    events = [event]
+    if event.payload["state"] == ShapeState.CONFIRMED:
+        events = [*count_confirmed(connection, found.collection_id, now), event]
+    append_events(connection, events, now)
+    return review
+
+
+def reject_review(
+    connection: Connection, review_id: int, person_id: int, note: str, *, for_author: bool, now: datetime
+) -> Review:
+    if not note.strip() or len(note) > _NOTE_LENGTH:
+        raise ParameterError(
+            f"labels are sent back with a note of at most {_NOTE_LENGTH} characters; say what is wrong"
+        )
+    person = person_name(connection, person_id)
+    found = _open_review(connection, review_id)
+    _resolved(connection, review_id, person_id, ReviewOutcome.REJECTED, now)
+    author = select(t.label_revision.c.author_id).where(t.label_revision.c.id == found.revision_id)
+    author_id = connection.execute(author).scalar_one()
+    queued = put_first(connection, found.shape_id, author_id if for_author else None, now)
+    detail = {"note": note.strip(), "reviewer_id": person_id, "review_id": review_id, "reason": found.reason.value}
+    rework = add_review(connection, found.revision_id, NewReview(ReviewReason.REWORK, detail), now)
+    append_audit(connection, person, "reject labels", f"label_revision {found.revision_id}", detail, now)
+    append_events(connection, [queued, _renewed(connection, rework)], now)
+    return rework
+
+
+def _open_review(connection: Connection, review_id: int) -> Review:
+    """An open review, locked after its shape, as whoever commits labels does it."""
+    shape_id = connection.execute(select(t.review.c.shape_id).where(t.review.c.id == review_id)).scalar()
+    if shape_id is None:
         raise NotFoundError(f"there is no review {review_id}")
+    lock_labels(connection, shape_id)
+    found = _review(connection.execute(select(t.review).where(t.review.c.id == review_id).with_for_update()).one())
     if found.outcome is not None:
         raise ConflictError(f"a review is resolved once but review {review_id} is {found.outcome} already")
-    values = {"resolved_at": now, "resolved_by": person_id, "outcome": ReviewOutcome.ACCEPTED.value}
+    return found
+
+
+def _resolved(connection: Connection, review_id: int, person_id: int, outcome: ReviewOutcome, now: datetime) -> Review:
+    values = {"resolved_at": now, "resolved_by": person_id, "outcome": outcome.value}
     statement = update(t.review).where(t.review.c.id == review_id).values(values).returning(t.review)
-    review = _review(connection.execute(statement).one())
-    detail = {"review_id": review_id, "reason": found.reason, "shape_id": found.shape_id}
-    append_audit(connection, person, "accept labels", f"label_revision {found.revision_id}", detail, now)
-    return review
+    return _review(connection.execute(statement).one())
+
+
+def _renewed(connection: Connection, about: Review) -> NewEvent:
+    """Brings the table of shapes up to date; the event that says so."""
+    renew_facets(connection, [about.shape_id])
+    facet = t.shape_facet.c
+    state = connection.execute(select(facet.state).where(facet.shape_id == about.shape_id)).scalar_one()
+    payload = {"shape_id": about.shape_id, "state": state, "review_id": about.id}
+    return NewEvent(EventKind.SHAPE, about.collection_id, payload)
 
 
 def succeed_reviews(connection: Connection, successor: LabelRevision, now: datetime) -> None:

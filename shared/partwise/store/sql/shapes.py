@@ -12,6 +12,7 @@ from partwise.store import tables as t
 from partwise.store.records import IngestedShape, IngestOutcome, Mesh, MeshRole, NewMesh, NewShape, Shape, ShapeState
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import batches, insert_for
+from partwise.store.sql.facets import add_facets
 from partwise.store.sql.state import shape_state
 
 _PRESENT = {MeshRole.WORKING: t.shape.c.mesh_hash, MeshRole.ORIGINAL: t.shape.c.original_mesh_hash}
@@ -40,6 +41,7 @@ def add_shapes(
     if rows:
         connection.execute(insert_for(connection, t.shape).on_conflict_do_nothing(), rows)
     added = _by_key(connection, collection_id, [row["source_key"] for row in rows])
+    add_facets(connection, collection_id, [shape.id for shape in added.values()])
     return [
         _known_shape(connection, new, before[new.source_key], now)
         if new.source_key in before

@@ -25,6 +25,8 @@ from partwise.store.records import (
     StageRun,
 )
 from partwise.store.sql.dialect import batches, insert_for
+from partwise.store.sql.facets import renew_facets
+from partwise.store.sql.places import renew_places
 from partwise.store.sql.shapes import add_meshes, refuse_unknown_shapes
 from partwise.store.sql.state import is_current_run, is_failed_run
 
@@ -77,7 +79,14 @@ def record_done(
     if runs:
         statement = _upsert_run(connection)
         connection.execute(statement, [_done_row(run, block_id, now) for run in runs])
+        _renew(connection, {run.shape_id for run in runs}, now)
     _upsert_scores(connection, scores, shapes, now)
+
+
+def _renew(connection: Connection, shape_ids: SizedIterable[int], now: datetime) -> None:
+    """Brings the table of shapes and the queue up to date with stage runs."""
+    renew_facets(connection, shape_ids)
+    renew_places(connection, shape_ids, now)
 
 
 def _make_room(connection: Connection, stage: str, shape_ids: Sequence[int]) -> None:
@@ -187,6 +196,7 @@ def record_failure(connection: Connection, failure: NewFailure, now: datetime) -
         ),
         values,
     )
+    _renew(connection, [failure.shape_id], now)
 
 
 def clear_failures(
@@ -196,6 +206,7 @@ def clear_failures(
     shape_ids: SizedIterable[int] | None,
     kind: FailureKind | None,
     reason_contains: str,
+    now: datetime,
 ) -> int:
     in_collection = t.stage_run.c.shape_id.in_(select(t.shape.c.id).where(t.shape.c.collection_id == collection_id))
     statement = delete(t.stage_run).where(is_failed_run(), in_collection)
@@ -205,11 +216,18 @@ def clear_failures(
         statement = statement.where(t.stage_run.c.summary["kind"].as_string() == kind.value)
     if reason_contains:
         statement = statement.where(t.stage_run.c.reason.icontains(reason_contains, autoescape=True))
-    if shape_ids is None:
-        return connection.execute(statement).rowcount
-    return sum(
-        connection.execute(statement.where(t.stage_run.c.shape_id.in_(some))).rowcount for some in batches(shape_ids)
+    some_statements = (
+        [statement]
+        if shape_ids is None
+        else [statement.where(t.stage_run.c.shape_id.in_(some)) for some in batches(shape_ids)]
     )
+    cleared = [
+        shape_id
+        for some in some_statements
+        for shape_id in connection.execute(some.returning(t.stage_run.c.shape_id)).scalars()
+    ]
+    _renew(connection, set(cleared), now)
+    return len(cleared)
 
 
 def _runs(*columns: Any) -> Select[Any]:

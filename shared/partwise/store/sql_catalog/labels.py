@@ -57,7 +57,7 @@ class SqlLabelCatalog(SqlBase):
 
     def add_review(self, revision_id: int, review: NewReview) -> Review:
         with writing(self._engine) as connection:
-            return reviews.add_review(connection, revision_id, review, self._clock())
+            return reviews.open_review(connection, revision_id, review, self._clock())
 
     def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
         with reading(self._engine) as connection:
@@ -70,3 +70,9 @@ class SqlLabelCatalog(SqlBase):
     def accept_review(self, review_id: int, person_id: int) -> Review:
         with writing(self._engine) as connection:
             return reviews.accept_review(connection, review_id, person_id, self._clock())
+
+    def reject_review(self, review_id: int, person_id: int, note: str, *, for_author: bool = False) -> Review:
+        with writing(self._engine) as connection:
+            return reviews.reject_review(
+                connection, review_id, person_id, note, for_author=for_author, now=self._clock()
+            )

@@ -39,7 +39,9 @@ class SqlStageCatalog(SqlBase):
         reason_contains: str = "",
     ) -> int:
         with writing(self._engine) as connection:
-            return stages.clear_failures(connection, collection_id, stage, shape_ids, kind, reason_contains)
+            return stages.clear_failures(
+                connection, collection_id, stage, shape_ids, kind, reason_contains, self._clock()
+            )
 
     def stage_runs(self, shape_ids: SizedIterable[int], stage: str) -> Mapping[int, r.StageRun]:
         with reading(self._engine) as connection:
@@ -81,7 +83,7 @@ class SqlStageCatalog(SqlBase):
 
     def supersede_block(self, name: str) -> int:
         with writing(self._engine) as connection:
-            return blocks.supersede_block(connection, name)
+            return blocks.supersede_block(connection, name, self._clock())
 
     def delete_blocks(self, names: SizedIterable[str]) -> None:
         with writing(self._engine) as connection:

@@ -32,6 +32,7 @@ draft = Table(
     Column("mesh_hash", String(64), nullable=False),
     Column("base_revision", ForeignKey("label_revision.id")),
     Column("base_sha256", String(64), nullable=False),
+    Column("seen_revision", ForeignKey("label_revision.id")),
     Column("schema_version", Integer, nullable=False),
     Column("n_strokes", Integer, nullable=False),
     Column("created_at", UtcDateTime, nullable=False),

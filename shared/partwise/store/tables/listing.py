@@ -1,6 +1,6 @@
 """What the table of shapes is filtered and ordered by, kept up to date beside the rows that it follows from."""
 
-from sqlalchemy import Boolean, Column, ForeignKey, Index, Integer, String, Table
+from sqlalchemy import Boolean, Column, Double, ForeignKey, Index, Integer, String, Table
 
 from partwise.store.tables.base import UtcDateTime, metadata
 
@@ -37,6 +37,8 @@ ordering = Table(
     Column("n_shapes", Integer, nullable=False),
     Column("built_at", UtcDateTime, nullable=False),
     Column("is_complete", Boolean, nullable=False),
+    Column("last_id", Integer),
+    Column("last_value", Double),
     Index(None, "collection_id", "score_name", "id"),
     sqlite_autoincrement=True,
 )

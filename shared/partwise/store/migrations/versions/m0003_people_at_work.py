@@ -4,6 +4,7 @@ Shapes that are ready and without shown labels go into the queue; reference labe
 """
 
 from datetime import UTC, datetime
+from typing import Any
 
 import sqlalchemy as sa
 from alembic import op
@@ -117,6 +118,7 @@ def _drafts() -> None:
         sa.Column("mesh_hash", sa.String(64), nullable=False),
         sa.Column("base_revision", sa.Integer),
         sa.Column("base_sha256", sa.String(64), nullable=False),
+        sa.Column("seen_revision", sa.Integer),
         sa.Column("schema_version", sa.Integer, nullable=False),
         sa.Column("n_strokes", sa.Integer, nullable=False),
         sa.Column("created_at", _TIME, nullable=False),
@@ -126,6 +128,7 @@ def _drafts() -> None:
         sa.Column("labels_sha256", sa.String(64)),
         sa.CheckConstraint("(closed_at IS NULL) = (outcome IS NULL)", name="ck_draft_closed_has_outcome"),
         sa.ForeignKeyConstraint(["base_revision"], ["label_revision.id"], name="fk_draft_base_revision"),
+        sa.ForeignKeyConstraint(["seen_revision"], ["label_revision.id"], name="fk_draft_seen_revision"),
         sa.ForeignKeyConstraint(["collection_id"], ["collection.id"], name="fk_draft_collection_id"),
         sa.ForeignKeyConstraint(["person_id"], ["person.id"], name="fk_draft_person_id"),
         sa.ForeignKeyConstraint(
@@ -312,7 +315,7 @@ def _tokens() -> None:
     op.create_index("ix_login_code_token_id", "login_code", ["token_id"])
 
 
-def _where(condition: str) -> dict[str, sa.TextClause]:
+def _where(condition: str) -> dict[str, Any]:
     """A partial index's condition, for both databases."""
     return {"sqlite_where": sa.text(condition), "postgresql_where": sa.text(condition)}
 

@@ -65,6 +65,8 @@ def _listing() -> None:
         sa.Column("n_shapes", sa.Integer, nullable=False),
         sa.Column("built_at", _TIME, nullable=False),
         sa.Column("is_complete", sa.Boolean, nullable=False),
+        sa.Column("last_id", sa.Integer),
+        sa.Column("last_value", sa.Double),
         sa.ForeignKeyConstraint(["collection_id"], ["collection.id"], name="fk_ordering_collection_id"),
         sa.PrimaryKeyConstraint("id", name="pk_ordering"),
         sqlite_autoincrement=True,

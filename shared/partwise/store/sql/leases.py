@@ -1,0 +1,209 @@
+"""Leases: who holds what, for how long, and how that ends."""
+
+from collections.abc import Collection as SizedIterable
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import Connection, Row, delete, select, update
+
+from partwise.errors import ConflictError, NotFoundError, ParameterError
+from partwise.store import tables as t
+from partwise.store.records import (
+    MAX_HELD,
+    EventKind,
+    Lease,
+    LeaseOutcome,
+    LeasePurpose,
+    NewEvent,
+    check_lease_time,
+)
+from partwise.store.sql.collections import append_audit
+from partwise.store.sql.dialect import batches, insert_for
+from partwise.store.sql.events import append_events
+
+_EXPIRED_AT_ONCE = 100  # the next claims find the others: a claim must not grow with how many left
+_REASON_LENGTH = 2_000
+
+
+def lease(connection: Connection, lease_id: int) -> Lease:
+    return _found(connection.execute(select(t.lease).where(t.lease.c.id == lease_id)).first(), lease_id)
+
+
+def leases_of(connection: Connection, person_id: int) -> list[Lease]:
+    query = select(t.lease).where(t.lease.c.person_id == person_id, t.lease.c.released_at.is_(None))
+    return [to_lease(row) for row in connection.execute(query.order_by(t.lease.c.id))]
+
+
+def active_leases(connection: Connection, collection_id: int, after: int, limit: int) -> list[Lease]:
+    query = (
+        select(t.lease)
+        .where(t.lease.c.collection_id == collection_id, t.lease.c.released_at.is_(None), t.lease.c.id > after)
+        .order_by(t.lease.c.id)
+        .limit(limit)
+    )
+    return [to_lease(row) for row in connection.execute(query)]
+
+
+def held_shapes(connection: Connection, shape_ids: SizedIterable[int]) -> dict[int, list[Lease]]:
+    found: dict[int, list[Lease]] = {}
+    for some in batches(shape_ids):
+        query = select(t.lease).where(t.lease.c.shape_id.in_(some), t.lease.c.released_at.is_(None))
+        for row in connection.execute(query.order_by(t.lease.c.id)):
+            found.setdefault(row.shape_id, []).append(to_lease(row))
+    return found
+
+
+def acquire(
+    connection: Connection, values: dict[str, Any], lease_s: float, now: datetime, *, is_prefetched: bool = False
+) -> Lease | None:
+    """A new lease; None if the place or the shape has become another's, or this person's, in this very moment.
+
+    values : collection_id, shape_id, slot, round, person_id, purpose.
+    """
+    row = {
+        **values,
+        "purpose": values["purpose"].value,
+        "is_prefetched": is_prefetched,
+        "acquired_at": now,
+        "expires_at": now + timedelta(seconds=lease_s),
+    }
+    statement = insert_for(connection, t.lease).values(row).on_conflict_do_nothing().returning(t.lease)
+    found = connection.execute(statement).first()
+    return None if found is None else to_lease(found)
+
+
+def expire(connection: Connection, person_id: int, now: datetime) -> list[NewEvent]:
+    """Ends leases of others than this person that were not renewed in time; their places are free then."""
+    query = (
+        select(t.lease)
+        .where(t.lease.c.released_at.is_(None), t.lease.c.expires_at < now, t.lease.c.person_id != person_id)
+        .order_by(t.lease.c.expires_at)
+        .limit(_EXPIRED_AT_ONCE)
+        .with_for_update(skip_locked=True)
+    )
+    lost = [to_lease(row) for row in connection.execute(query)]
+    return [end(connection, each, LeaseOutcome.EXPIRED, now)[1] for each in lost]
+
+
+def renew(
+    connection: Connection, lease_id: int, person_id: int, lease_s: float, is_prefetched: bool | None, now: datetime
+) -> Lease:
+    check_lease_time(lease_s)
+    known = own_active(connection, lease_id, person_id)
+    if known.is_prefetched and is_prefetched is False:
+        refuse_another(connection, person_id)
+    values = {
+        "expires_at": now + timedelta(seconds=lease_s),
+        "is_prefetched": known.is_prefetched if is_prefetched is None else is_prefetched,
+    }
+    statement = update(t.lease).where(t.lease.c.id == lease_id).values(values).returning(t.lease)
+    return to_lease(connection.execute(statement).one())
+
+
+def refuse_another(connection: Connection, person_id: int) -> None:
+    """Let nobody hold more than `MAX_HELD` shapes beside the prefetched one."""
+    held = [each for each in leases_of(connection, person_id) if not each.is_prefetched]
+    if len(held) >= MAX_HELD:
+        shapes = ", ".join(str(each.shape_id) for each in held)
+        raise ConflictError(
+            f"a person holds at most {MAX_HELD} shapes and holds {shapes}; confirm or release one first"
+        )
+
+
+def release(connection: Connection, lease_id: int, person_id: int, now: datetime) -> Lease:
+    known = _own(connection, lease_id, person_id)
+    if known.released_at is not None:
+        return known
+    ended, event = end(connection, known, LeaseOutcome.RELEASED, now)
+    append_events(connection, [event], now)
+    return ended
+
+
+def skip(connection: Connection, lease_id: int, person_id: int, reason: str, now: datetime) -> Lease:
+    if not reason.strip() or len(reason) > _REASON_LENGTH:
+        raise ParameterError(f"a skip needs a reason of at most {_REASON_LENGTH} characters; say what is wrong with it")
+    known = own_active(connection, lease_id, person_id)
+    ended, event = end(connection, known, LeaseOutcome.SKIPPED, now, reason.strip())
+    append_events(connection, [event], now)
+    return ended
+
+
+def clear(connection: Connection, lease_id: int, operator_id: int, now: datetime) -> Lease:
+    known = _locked(connection, lease_id)
+    operator = person_name(connection, operator_id)
+    if known.released_at is not None:
+        return known
+    ended, event = end(connection, known, LeaseOutcome.CLEARED, now)
+    detail = {"shape_id": known.shape_id, "person_id": known.person_id}
+    append_audit(connection, operator, "clear lease", f"lease {lease_id}", detail, now)
+    append_events(connection, [event], now)
+    return ended
+
+
+def end(
+    connection: Connection, known: Lease, outcome: LeaseOutcome, now: datetime, reason: str | None = None
+) -> tuple[Lease, NewEvent]:
+    """Ends an active, locked lease and gives its place back, or takes it away if its label is in."""
+    values = {"released_at": now, "outcome": outcome.value, "reason": reason}
+    statement = update(t.lease).where(t.lease.c.id == known.id).values(values).returning(t.lease)
+    ended = to_lease(connection.execute(statement).one())
+    of_lease = t.queue_rank.c.lease_id == known.id
+    if outcome is LeaseOutcome.COMPLETED and known.purpose is not LeasePurpose.BLIND:
+        connection.execute(delete(t.queue_rank).where(of_lease))
+    else:
+        connection.execute(update(t.queue_rank).where(of_lease).values(lease_id=None))
+    return ended, queue_event(ended, outcome.value)
+
+
+def queue_event(about: Lease, what: str) -> NewEvent:
+    """Says that a shape was taken or given back."""
+    payload = {"shape_id": about.shape_id, "person_id": about.person_id, "what": what}
+    return NewEvent(EventKind.QUEUE, about.collection_id, payload)
+
+
+def person_name(connection: Connection, person_id: int, *, for_update: bool = False) -> str:
+    """The person's name. `for_update` makes what else this person asks for wait."""
+    query = select(t.person.c.name).where(t.person.c.id == person_id)
+    name = connection.execute(query.with_for_update(key_share=True) if for_update else query).scalar()
+    if name is None:
+        raise NotFoundError(f"there is no person with id {person_id}; add them first")
+    return name
+
+
+def own_active(connection: Connection, lease_id: int, person_id: int) -> Lease:
+    """A person's lease that has not ended, locked. `ConflictError` otherwise."""
+    known = _own(connection, lease_id, person_id)
+    if known.outcome is not None:
+        raise ConflictError(
+            f"a lease must last for this but lease {lease_id} is {known.outcome}; claim the shape again"
+        )
+    return known
+
+
+def _own(connection: Connection, lease_id: int, person_id: int) -> Lease:
+    known = _locked(connection, lease_id)
+    if known.person_id != person_id:
+        raise ConflictError(f"a lease is used by its holder only but lease {lease_id} is another person's")
+    return known
+
+
+def _locked(connection: Connection, lease_id: int) -> Lease:
+    query = select(t.lease).where(t.lease.c.id == lease_id).with_for_update()
+    return _found(connection.execute(query).first(), lease_id)
+
+
+def _found(row: Row[Any] | None, lease_id: int) -> Lease:
+    if row is None:
+        raise NotFoundError(f"there is no lease {lease_id}; was it another workspace's?")
+    return to_lease(row)
+
+
+def to_lease(row: Row[Any]) -> Lease:
+    outcome = None if row.outcome is None else LeaseOutcome(row.outcome)
+    return Lease(**{**row._mapping, "purpose": LeasePurpose(row.purpose), "outcome": outcome})
+
+
+def active_of_shape(connection: Connection, shape_id: int) -> Sequence[Lease]:
+    """The leases of a shape that have not ended."""
+    return held_shapes(connection, [shape_id]).get(shape_id, [])

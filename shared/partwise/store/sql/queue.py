@@ -1,0 +1,168 @@
+"""The queue: claims, by rank and by name."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Row, and_, exists, func, or_, select, update
+
+from partwise.errors import ConflictError
+from partwise.store import tables as t
+from partwise.store.records import (
+    Lease,
+    LeaseOutcome,
+    LeasePurpose,
+    NewClaim,
+    ShapeState,
+    check_lease_time,
+)
+from partwise.store.sql import leases
+from partwise.store.sql.events import append_events
+from partwise.store.sql.honeypots import claim_honeypot
+from partwise.store.sql.places import collection_queue_settings, current_round
+from partwise.store.sql.shapes import refuse_unknown_shapes
+
+_TRIES = 20  # each fails only if someone took the very same place in the same moment
+
+
+def claim_next(connection: Connection, claim: NewClaim, now: datetime) -> Lease | None:
+    settings = collection_queue_settings(connection, claim.collection_id)
+    leases.person_name(connection, claim.person_id, for_update=True)
+    events = leases.expire(connection, claim.person_id, now)
+    prefetched = [
+        each
+        for each in leases.leases_of(connection, claim.person_id)
+        if each.is_prefetched and each.collection_id == claim.collection_id
+    ]
+    if prefetched:
+        taken: Lease | None = leases.renew(
+            connection, prefetched[0].id, claim.person_id, claim.lease_s, claim.is_prefetch, now
+        )
+    else:
+        if not claim.is_prefetch:
+            leases.refuse_another(connection, claim.person_id)
+        taken = None
+        if claim.draw < settings.honeypot_share:
+            taken = claim_honeypot(connection, claim, claim.draw / settings.honeypot_share, now)
+        taken = taken or _claim_by_rank(connection, claim, now)
+        if taken is not None:
+            events.append(leases.queue_event(taken, "claimed"))
+    append_events(connection, events, now)
+    return taken
+
+
+def _claim_by_rank(connection: Connection, claim: NewClaim, now: datetime) -> Lease | None:
+    for _ in range(_TRIES):
+        place = _first_place(connection, claim, t.queue_rank.c.person_id == claim.person_id)
+        place = place or _first_place(connection, claim, t.queue_rank.c.person_id.is_(None))
+        if place is None:
+            return None
+        taken = _take(connection, place, claim.person_id, claim.lease_s, now, is_prefetched=claim.is_prefetch)
+        if taken is not None:
+            return taken
+    return None
+
+
+def _first_place(connection: Connection, claim: NewClaim, is_for_them: ColumnElement[bool]) -> Row[Any] | None:
+    """The first free place that this person may have, locked; those that others are just taking are passed over."""
+    place, past = t.queue_rank, t.lease
+    is_over_for_them = and_(
+        past.c.round == place.c.round,
+        past.c.outcome.in_([LeaseOutcome.SKIPPED.value, LeaseOutcome.COMPLETED.value]),
+    )
+    had = exists().where(
+        past.c.person_id == claim.person_id,
+        past.c.shape_id == place.c.shape_id,
+        or_(past.c.released_at.is_(None), is_over_for_them),
+    )
+    query = (
+        select(place)
+        .where(place.c.collection_id == claim.collection_id, place.c.lease_id.is_(None), is_for_them, ~had)
+        .order_by(place.c.rank, place.c.shape_id, place.c.slot)
+        .limit(1)
+        .with_for_update(skip_locked=True, of=place)
+    )
+    return connection.execute(query).first()
+
+
+def _take(
+    connection: Connection,
+    place: Row[Any],
+    person_id: int,
+    lease_s: float,
+    now: datetime,
+    *,
+    is_prefetched: bool = False,
+) -> Lease | None:
+    values = {
+        "collection_id": place.collection_id,
+        "shape_id": place.shape_id,
+        "slot": place.slot,
+        "round": place.round,
+        "person_id": person_id,
+        "purpose": LeasePurpose.INDEPENDENT if place.n_slots > 1 else LeasePurpose.LABEL,
+    }
+    taken = leases.acquire(connection, values, lease_s, now, is_prefetched=is_prefetched)
+    if taken is not None:
+        is_it = and_(t.queue_rank.c.shape_id == place.shape_id, t.queue_rank.c.slot == place.slot)
+        connection.execute(update(t.queue_rank).where(is_it).values(lease_id=taken.id))
+    return taken
+
+
+def claim_shape(connection: Connection, shape_id: int, person_id: int, lease_s: float, now: datetime) -> Lease:
+    check_lease_time(lease_s)
+    leases.person_name(connection, person_id, for_update=True)
+    refuse_unknown_shapes(connection, [shape_id])
+    events = leases.expire(connection, person_id, now)
+    own = [each for each in leases.active_of_shape(connection, shape_id) if each.person_id == person_id]
+    if own:
+        taken = leases.renew(connection, own[0].id, person_id, lease_s, False, now)
+    else:
+        leases.refuse_another(connection, person_id)
+        taken = take_by_name(connection, shape_id, person_id, lease_s, now)
+        events.append(leases.queue_event(taken, "claimed"))
+    append_events(connection, events, now)
+    return taken
+
+
+def take_by_name(connection: Connection, shape_id: int, person_id: int, lease_s: float, now: datetime) -> Lease:
+    """The lease of a free place of a shape, or of a shape that wants no more labels."""
+    facet = connection.execute(select(t.shape_facet).where(t.shape_facet.c.shape_id == shape_id)).one()
+    if facet.state in (ShapeState.NEW, ShapeState.FAILED):
+        raise ConflictError(f"shape {shape_id} has no surface to label yet; it is {facet.state}: preprocess it first")
+    _refuse_second_answer(connection, shape_id, person_id)
+    place = t.queue_rank
+    free = select(place).where(place.c.shape_id == shape_id, place.c.lease_id.is_(None))
+    found = connection.execute(free.order_by(place.c.slot).limit(1).with_for_update()).first()
+    if found is not None:
+        taken = _take(connection, found, person_id, lease_s, now)
+    else:
+        values = {
+            "collection_id": facet.collection_id,
+            "shape_id": shape_id,
+            "slot": 0,
+            "round": current_round(connection, shape_id),
+            "person_id": person_id,
+            "purpose": LeasePurpose.LABEL,
+        }
+        taken = leases.acquire(connection, values, lease_s, now)
+    if taken is None:
+        raise ConflictError(f"a shape is in one person's hands at a time but shape {shape_id} is with someone else now")
+    return taken
+
+
+def _refuse_second_answer(connection: Connection, shape_id: int, person_id: int) -> None:
+    """Independent labels are different people's: whoever's is in waits until the round is complete."""
+    past = t.lease
+    is_compared = exists().where(t.queue_rank.c.shape_id == shape_id, t.queue_rank.c.round == past.c.round)
+    query = select(func.count()).where(
+        past.c.shape_id == shape_id,
+        past.c.person_id == person_id,
+        past.c.outcome == LeaseOutcome.COMPLETED.value,
+        past.c.purpose == LeasePurpose.INDEPENDENT.value,
+        is_compared,
+    )
+    if connection.execute(query).scalar_one():
+        raise ConflictError(
+            f"independent labels must be different people's but this person's of shape {shape_id} is in; "
+            "wait until the others' are"
+        )
