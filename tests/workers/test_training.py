@@ -125,6 +125,14 @@ def test_without_labels_there_is_nothing_to_train_on(described) -> None:
         train(*described)
 
 
+def test_labels_that_cannot_be_learned_from_yet_are_not_said_to_be_missing(described) -> None:
+    workspace, collection = described
+    revision_id = label(workspace, collection, 0, LABELS)
+    workspace.catalog.add_review(revision_id, NewReview(ReviewReason.MAP_BACK))
+    with pytest.raises(NotEnoughDataError, match=r"none of 1 labelled shapes.+\(1 wait for a review\)"):
+        train(workspace, collection)
+
+
 def test_reference_labels_are_never_trained_on(described) -> None:
     label(*described, 0, LABELS, "reference")
     with pytest.raises(NotEnoughDataError):

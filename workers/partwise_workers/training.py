@@ -19,7 +19,7 @@ from partwise.mesh import TriMesh
 from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.array_store import ArrayStore
 from partwise.store.open import open_array_store
-from partwise.store.records import Collection, LabelRevision, Model, NewModel, StageRun
+from partwise.store.records import Collection, LabelRevision, Model, NewModel, ShapeState, StageRun
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected, cores
 from partwise_workers.model_store import write_model
@@ -130,9 +130,7 @@ def train_collection(workspace: Workspace, collection: Collection, on_progress: 
     shapes = [shape for shape in labelled_shapes(workspace, collection) if shape.labels.any()]
     part_ids = tuple(sorted({int(part) for shape in shapes for part in np.unique(shape.labels) if part}))
     if not part_ids:
-        raise NotEnoughDataError(
-            f"training needs labelled shapes but {collection.name!r} has none; confirm those `partwise select` names"
-        )
+        raise _nothing_to_learn(workspace, collection)
     config = workspace.config.train
     refinement = workspace.config.refine if config.tune_smoothness else None
     with connected():
@@ -145,6 +143,20 @@ def train_collection(workspace: Workspace, collection: Collection, on_progress: 
             ray.kill(actor)
     revision_ids = tuple(shape.revision_id for shape in shapes)
     return workspace.catalog.save_model(NewModel(collection.id, result.recipe, result.weights_key, revision_ids))
+
+
+def _nothing_to_learn(workspace: Workspace, collection: Collection) -> NotEnoughDataError:
+    states = workspace.catalog.state_counts(collection.id)
+    n_review, n_labelled = states[ShapeState.REVIEW], states[ShapeState.CONFIRMED] + states[ShapeState.REVIEW]
+    if not n_labelled:
+        return NotEnoughDataError(
+            f"training needs labelled shapes but {collection.name!r} has none; confirm those `partwise select` names"
+        )
+    return NotEnoughDataError(
+        f"training needs labels on meshes that are described as configured but none of {n_labelled:,} labelled shapes "
+        f"of {collection.name!r} has any ({n_review:,} wait for a review); run `partwise preprocess`, which moves "
+        "labels along, and look at those in review"
+    )
 
 
 def recipe_of(config: TrainConfig) -> Recipe:
