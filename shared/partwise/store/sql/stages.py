@@ -186,6 +186,9 @@ def record_failure(connection: Connection, failure: NewFailure, now: datetime) -
         "finished_at": now,
         "is_superseded": False,
     }
+    of_stage = and_(t.stage_run.c.shape_id == failure.shape_id, t.stage_run.c.stage == failure.stage)
+    # what failed under other parameters says nothing any more, and would name the shape twice
+    connection.execute(delete(t.stage_run).where(of_stage, is_failed_run(), t.stage_run.c.key != failure.key))
     statement = insert_for(connection, t.stage_run)
     renewed = {name: statement.excluded[name] for name in values if name not in ("shape_id", "stage", "key")}
     connection.execute(

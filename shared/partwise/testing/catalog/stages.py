@@ -135,6 +135,14 @@ class StageConformance:
             catalog.record_failure(NewFailure(shape_id, "describe", "k1", reason))
         assert [failure.run.reason for failure in catalog.failures(collection.id)] == ["hung"]
 
+    def test_failing_under_other_parameters_replaces_the_failure_too(self, catalog: Catalog) -> None:
+        collection, ids = add_collection(catalog, 2)
+        for key in ("k1", "k2"):
+            catalog.record_failure(NewFailure(ids[0], "describe", key, "crashed"))
+            catalog.record_failure(NewFailure(ids[1], "remesh", "k1", "hung"))
+        found = [(failure.run.shape_id, failure.run.key) for failure in catalog.failures(collection.id)]
+        assert sorted(found) == [(ids[0], "k2"), (ids[1], "k1")]
+
     def test_failure_never_displaces_a_done_run(self, catalog: Catalog) -> None:
         _, ids = add_collection(catalog, 1)
         publish(catalog, ids, key="k1")
