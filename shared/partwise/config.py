@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 from partwise.errors import ConfigError, ParameterError
 from partwise.features.parameters import DescribeParameters
 from partwise.remesh.parameters import RemeshParameters
-from partwise.segmentation.parameters import RefinementParameters
+from partwise.segmentation.parameters import BoundaryParameters, RefinementParameters
 
 CONFIG_FILE = "partwise.toml"
 DATABASE_VARIABLE = "PARTWISE_DATABASE_URL"
@@ -150,6 +150,7 @@ class Config:
     describe: DescribeParameters = field(default_factory=DescribeParameters)
     train: TrainConfig = field(default_factory=TrainConfig)
     refine: RefinementParameters = field(default_factory=RefinementParameters)
+    boundary: BoundaryParameters = field(default_factory=BoundaryParameters)
 
 
 def read_config(path: Path, environment: Mapping[str, str] = os.environ) -> Config:

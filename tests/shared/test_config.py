@@ -173,6 +173,8 @@ def test_what_is_not_utf8_is_named(file: Path) -> None:
         ("[train]\nlearning_rate = nan\n", ("[train] learning_rate must be between 0 and 1 but is nan",)),
         ("[train]\nseed = -1\n", ("[train] seed must be 0 or more but is -1",)),
         ("[refine]\nsmoothness = inf\n", ("[refine] smoothness must be finite",)),
+        ('[boundary]\nform = "flat"\n', ("[boundary] form must be one of crease, paper but is 'flat'",)),
+        ("[boundary]\nangle_weight = 1.5\n", ("[boundary] angle_weight must be in [0, 1] but is 1.5",)),
         ("[refine]\nangle_floor = 1\n", ("[refine] angle_floor must be in (0, 1)",)),
     ],
 )
