@@ -11,6 +11,7 @@ from partwise_service.dependencies import (
     WorkspaceDep,
     require_all_scope,
 )
+from partwise_service.schemas.base import refuse_unprintable
 from partwise_service.schemas.collections import CollectionOut, CollectionsOut, NewCollection, SettingsChange
 
 router = APIRouter(prefix="/collections", tags=["collections"])
@@ -27,6 +28,7 @@ def list_collections(caller: Caller, catalog: CatalogDep) -> CollectionsOut:
 def create_collection(caller: Operator, catalog: CatalogDep, new: NewCollection) -> CollectionOut:
     """Make a collection with its parts, in the order annotators see them. For operators of all collections."""
     require_all_scope(caller)
+    refuse_unprintable("a collection's name", new.name)
     made = catalog.create_collection(new.name, new.parts)
     catalog.append_audit(caller.name, "create collection", f"collection {made.id}", {"name": made.name})
     return CollectionOut.of(made)

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query
 
 from partwise.store.records import NewToken, Role
 from partwise_service.dependencies import Admin, Caller, CatalogDep, Operator, Reviewer, require_all_scope, require_role
-from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
+from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId, refuse_unprintable
 from partwise_service.schemas.people import (
     AuditOut,
     IssuedTokenOut,
@@ -34,6 +34,7 @@ def list_people(_caller: Reviewer, catalog: CatalogDep) -> PeopleOut:
 def add_person(caller: Operator, catalog: CatalogDep, new: NewPerson) -> PersonOut:
     """Add a person, to give them a token."""
     require_all_scope(caller)
+    refuse_unprintable("a person's name", new.name)
     person = catalog.add_person(new.name)
     catalog.append_audit(caller.name, "add person", f"person {person.id}", {"name": person.name})
     return PersonOut.model_validate(person)

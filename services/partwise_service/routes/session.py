@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from partwise.store.records import IssuedToken
 from partwise_service.dependencies import Caller, CatalogDep, ServiceDep, client_address, refuse_foreign_page
-from partwise_service.schemas.session import Login, Me
+from partwise_service.schemas.session import Login, Me, TokenLogin
 from partwise_service.security.authentication import (
     SESSION_COOKIE,
     Credential,
@@ -48,11 +48,11 @@ def show_me(caller: Caller) -> Me:
 
 def _session(open_service: Service, login: Login, address: str) -> IssuedToken:
     catalog, settings = open_service.workspace.catalog, open_service.settings
-    if login.token is not None:
+    if isinstance(login, TokenLogin):
         identity = authenticate(open_service, Credential(login.token, is_session=False), address)
         code = catalog.issue_login_code(identity.token.id, settings.login_code_s).code
     else:
-        code = login.code or ""
+        code = login.code
     refuse_too_many(open_service, address, code)
     session = catalog.exchange_login_code(code, settings.session_h * HOUR_S)
     if session is None:

@@ -7,11 +7,11 @@ from pydantic import Field, JsonValue
 
 from partwise.labels.schema import PartSchema
 from partwise.store.records import Collection
-from partwise_service.schemas.base import Answer, AnyId, Request
+from partwise_service.schemas.base import NO_NUL, WHOLE, Answer, AnyId, Request
 
 PartName = Annotated[str, Field(min_length=1, max_length=64)]
 Colour = Annotated[str, Field(pattern="^#[0-9A-Fa-f]{6}$", description="`#RRGGBB`.")]
-Gloss = Annotated[str, Field(max_length=2_000, description="What the part is, for annotators.")]
+Gloss = Annotated[str, NO_NUL, Field(max_length=2_000, description="What the part is, for annotators.")]
 
 
 class CollectionOut(Answer):
@@ -34,7 +34,7 @@ class CollectionsOut(Answer):
 
 
 class NewCollection(Request):
-    name: Annotated[str, Field(min_length=1, max_length=200, pattern=r"^\S(.*\S)?$")]
+    name: Annotated[str, Field(min_length=1, max_length=200)]
     parts: Annotated[list[PartName], Field(min_length=1, max_length=1_000)]
 
 
@@ -42,7 +42,7 @@ class SettingsChange(Request):
     """What is given is set, the rest stays."""
 
     up: Literal["x", "y", "z"] | None = None
-    working_faces: Annotated[int, Field(ge=100, le=1_000_000)] | None = None
+    working_faces: Annotated[int, Field(ge=100, le=1_000_000), WHOLE] | None = None
     remesh: Literal["auto", "never"] | None = None
 
 
@@ -79,4 +79,4 @@ class PartChange(Request):
     name: PartName | None = None
     colour: Colour | None = None
     gloss: Gloss | None = None
-    parent_id: Annotated[int, Field(ge=0, le=65_535)] | None = None
+    parent_id: Annotated[int, Field(ge=0, le=65_535), WHOLE] | None = None

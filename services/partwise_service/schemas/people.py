@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field, JsonValue
 
 from partwise.store.records import Role, Token
-from partwise_service.schemas.base import Answer, AnyId, Request
+from partwise_service.schemas.base import NO_NUL, Answer, AnyId, Request
 
 
 class PersonOut(Answer):
@@ -20,7 +20,7 @@ class PeopleOut(Answer):
 
 
 class NewPerson(Request):
-    name: Annotated[str, Field(min_length=1, max_length=200, pattern=r"^[^\s\x00-\x1f\x7f]+( [^\s\x00-\x1f\x7f]+)*$")]
+    name: Annotated[str, Field(min_length=1, max_length=200)]
 
 
 class TokenOut(Answer):
@@ -52,7 +52,7 @@ class NewTokenIn(Request):
     role: Annotated[Role, Field(strict=False)]
     scope: Annotated[list[AnyId], Field(min_length=1, max_length=1_000)] | None = None
     days: Annotated[float, Field(gt=0, le=3_660, strict=False)] = 30.0
-    note: Annotated[str, Field(max_length=500)] = ""
+    note: Annotated[str, NO_NUL, Field(max_length=500)] = ""
 
 
 class IssuedTokenOut(Answer):

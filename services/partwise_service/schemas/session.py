@@ -1,9 +1,9 @@
 """Logging in, and who one is."""
 
 from datetime import datetime
-from typing import Annotated, Self
+from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from partwise.store.records import Role
 from partwise_service.schemas.base import Answer, Request
@@ -12,17 +12,19 @@ from partwise_service.security.identity import Identity
 Secret = Annotated[str, Field(min_length=1, max_length=200)]
 
 
-class Login(Request):
-    """Either a one-time code, as in the address that `partwise serve` shows, or a token."""
+class CodeLogin(Request):
+    """A one-time code, as in the address that `partwise serve` shows."""
 
-    code: Secret | None = None
-    token: Secret | None = None
+    code: Secret
 
-    @model_validator(mode="after")
-    def _one_of_both(self) -> Self:
-        if (self.code is None) is (self.token is None):
-            raise ValueError("give a code or a token, and not both")
-        return self
+
+class TokenLogin(Request):
+    """A token."""
+
+    token: Secret
+
+
+Login = CodeLogin | TokenLogin
 
 
 class Me(Answer):

@@ -8,7 +8,7 @@ from pydantic import Field, JsonValue
 from partwise.store.records import LabelRevision, ListedShape, Mesh, RevisionKind, Shape, ShapeState
 from partwise.store.reviews import Review, ReviewOutcome, ReviewReason
 from partwise.workspace.provenance import ProvenanceCard
-from partwise_service.schemas.base import Answer, Request
+from partwise_service.schemas.base import NO_NUL, Answer, Request
 
 
 class ShapeRow(Answer):
@@ -120,7 +120,7 @@ class ReviewsOut(Answer):
 class Rejection(Request):
     """Why labels are sent back. for_author : only whoever made them gets the shape again; else anybody."""
 
-    note: Annotated[str, Field(min_length=1, max_length=2_000)]
+    note: Annotated[str, NO_NUL, Field(min_length=1, max_length=2_000)]
     for_author: bool = False
 
 

@@ -1,5 +1,7 @@
 """/collections/…/parts: versions, and what is refused."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -53,6 +55,13 @@ def test_a_name_is_taken_once(reviewer, mugs) -> None:
 )
 def test_what_is_no_part_is_refused(reviewer, mugs, body) -> None:
     assert reviewer.post(_path(mugs), json=body).status_code == 422
+
+
+@pytest.mark.parametrize("gloss", ["\0", "\ud800", "x" * 2_001])
+def test_text_that_cannot_be_kept_is_refused(reviewer, mugs, gloss) -> None:
+    body = json.dumps({"name": "lid", "gloss": gloss})  # json escapes what no encoding has
+    headers = {"Content-Type": "application/json"}
+    assert reviewer.post(_path(mugs), content=body, headers=headers).status_code == 422
 
 
 def test_a_version_that_never_was_is_not_found(annotator, mugs) -> None:
