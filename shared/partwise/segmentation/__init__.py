@@ -1,1 +1,1 @@
-"""Labels over faces made consistent: graph-cut energies, alpha expansion and the refinement of a model's answer."""
+"""What is done to labels over faces: patches, paint, and graph cuts on given labels or on a model's answer."""

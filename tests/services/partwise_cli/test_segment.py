@@ -1,12 +1,14 @@
 """`partwise segment`: the toolbox from file to file, and what it refuses."""
 
 import json
+import shlex
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from uuid import UUID
 
 import numpy as np
 import pytest
+import typer
 
 from partwise.errors import ConfigError, FileFormatError, LabelError, MeshError, ParameterError, StoreError
 from partwise.exchange.labels_psb import read_psb_labels
@@ -25,6 +27,7 @@ from partwise.segmentation.boundary_refinement import refine_boundaries
 from partwise.segmentation.parameters import PAPER_BOUNDARY, BoundaryParameters
 from partwise.segmentation.patches import over_segment
 from partwise.testing.meshes import subdivided
+from partwise_cli.commands import segment
 
 AT = datetime(2026, 3, 1, 9, tzinfo=UTC)
 
@@ -57,6 +60,19 @@ def _log(mesh: TriMesh, base: np.ndarray) -> str:
     for n, operation in enumerate((Assign(((0, 10),), 2), Assign(((5, 3),), 1), Clear(), Undo())):
         editor.perform(operation, stroke_id=UUID(int=n), author_id=1, at=AT + timedelta(seconds=4 * n))
     return log_to_json(editor.log())
+
+
+# What is documented
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/segmentation.md"])
+def test_documented_commands_are_valid_uses(page: str) -> None:
+    text = (Path(__file__).parents[3] / page).read_text(encoding="utf-8")
+    lines = [shlex.split(line, comments=True)[2:] for line in text.splitlines() if line.startswith("partwise segment ")]
+    assert {words[0] for words in lines} == {"patches", "refine", "replay"}
+    group = typer.main.get_command(segment.app)
+    for name, *arguments in lines:
+        group.commands[name].make_context(name, arguments)  # type: ignore[attr-defined]  # it is a group
 
 
 # Patches
