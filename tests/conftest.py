@@ -8,7 +8,9 @@ from jaxtyping import install_import_hook
 ARRAY_FUNCTIONS = (
     "geometry.adjacency", "geometry.dihedral", "geometry.faces", "geometry.sampling", "geometry.vertices",
     "features.shape_context", "features.shape_diameter", "features.spin_image",
-    "segmentation.alpha_expansion",
+    "segmentation.alpha_expansion", "segmentation.boundary_costs", "segmentation.boundary_distances",
+    "segmentation.crease_walk", "segmentation.creases", "segmentation.k_means_patches",
+    "labels.face_runs", "simulate.annotator.motor", "simulate.annotator.moves",
 )  # fmt: skip
 """Modules whose annotations are checked on every call while tests run: array shapes, dtypes, and that they agree.
 
