@@ -3,11 +3,14 @@
 import getpass
 import logging
 import os
+import socket
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from partwise.errors import ConfigError
 from partwise_cli.arguments import CollectionOption, JsonOption, WorkspaceArgument
 from partwise_cli.terminal import print_json, print_table
 
@@ -56,13 +59,9 @@ def serve(
     from partwise_service.settings import ServiceSettings
 
     settings = ServiceSettings.of(os.environ, workspace=ws, host=host, port=port, public_url=public_url)
-    code = _login_code(settings, person or getpass.getuser())
-    typer.echo(f"{settings.origin}/#code={code}")
-    typer.echo(f"opens the page once, within {settings.login_code_s / 60:g} minutes; Ctrl-C ends the service")
-    uvicorn.run(
-        create_app(settings),
-        host=settings.host,
-        port=settings.port,
+    app = create_app(settings)
+    config = uvicorn.Config(
+        app,
         log_config=None,
         log_level=logging.WARNING,
         access_log=False,
@@ -71,6 +70,23 @@ def serve(
         forwarded_allow_ips=list(settings.trusted_proxies),
         timeout_graceful_shutdown=STOP_S,
     )
+    with _listening(settings) as listener:
+        code = _login_code(settings, person or getpass.getuser())
+        typer.echo(f"{settings.origin}/#code={code}")
+        typer.echo(f"opens the page once, within {settings.login_code_s / 60:g} minutes; Ctrl-C ends the service")
+        with suppress(KeyboardInterrupt):  # how it is meant to end
+            uvicorn.Server(config).run(sockets=[listener])
+
+
+def _listening(settings: "ServiceSettings") -> socket.socket:
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    try:
+        return socket.create_server((settings.host, settings.port), family=family)
+    except OSError as error:
+        raise ConfigError(
+            f"the service must be able to listen on {settings.host}, port {settings.port}, but: "
+            f"{error.strerror or error}; choose others with --host and --port"
+        ) from error
 
 
 def _login_code(settings: "ServiceSettings", name: str) -> str:
