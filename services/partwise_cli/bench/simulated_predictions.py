@@ -6,13 +6,12 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from partwise.errors import LabelError, ParameterError
-from partwise.geometry.adjacency import edge_adjacency
+from partwise.geometry.adjacency import edge_adjacency, label_regions
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids
 from partwise.mesh import TriMesh
 from partwise.metrics.accuracy import accuracy_by_area
 from partwise.segmentation.boundary_distances import SurfaceGraph, boundary_distances
 from partwise.segmentation.model_refinement import refine
-from partwise.simulate.annotator.sight import regions
 from partwise_cli.bench.displacement import smooth_field
 
 ACCURACY = 0.92
@@ -88,7 +87,7 @@ def _noise(
     mesh: TriMesh, truth: Int[np.ndarray, " m"], n_classes: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "m L"]:
     points = face_centroids(mesh) / bounding_box_diagonal(mesh)
-    segment = regions(truth, edge_adjacency(mesh).faces)
+    segment = label_regions(truth, edge_adjacency(mesh).faces)
     columns = []
     for _ in range(n_classes):
         smooth = sum(weight * smooth_field(points / length, rng) for length, weight in WAVELENGTHS)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Int, Integer
 from scipy import sparse
 
 from partwise.mesh import TriMesh
@@ -54,7 +54,14 @@ def vertex_neighbours(mesh: TriMesh) -> sparse.csr_array:
 
 def edge_components(mesh: TriMesh) -> Int[np.ndarray, " m"]:
     """Connected component of each face across edges, (m,) int64, numbered from 0 in order of first face."""
-    pairs = edge_adjacency(mesh).faces
-    graph = sparse.coo_array((np.ones(len(pairs), dtype=bool), (pairs[:, 0], pairs[:, 1])), shape=(mesh.n_faces,) * 2)
-    component = sparse.csgraph.connected_components(graph, directed=False)[1]
-    return component.astype(np.int64)
+    return label_regions(np.zeros(mesh.n_faces, dtype=np.int64), edge_adjacency(mesh).faces)
+
+
+def label_regions(labels: Integer[np.ndarray, " m"], pairs: Int[np.ndarray, "k 2"]) -> Int[np.ndarray, " m"]:
+    """Connected region of equal label of each face, (m,) int64, numbered from 0 in order of first face.
+
+    pairs : (k, 2), the faces that touch.
+    """
+    joined = pairs[labels[pairs[:, 0]] == labels[pairs[:, 1]]]
+    graph = sparse.coo_array((np.ones(len(joined), dtype=bool), (joined[:, 0], joined[:, 1])), shape=(len(labels),) * 2)
+    return np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1], dtype=np.int64)

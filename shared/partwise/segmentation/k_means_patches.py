@@ -2,10 +2,9 @@
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import sparse
 from scipy.spatial import cKDTree
 
-from partwise.geometry.adjacency import edge_adjacency
+from partwise.geometry.adjacency import edge_adjacency, label_regions
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
 from partwise.segmentation.kernels.nearest_centres import nearest_centres
@@ -34,7 +33,7 @@ class KMeansPatches:
         self._areas = face_areas(mesh)
         self._pairs = edge_adjacency(mesh).faces
         self._max_iterations = parameters.max_iterations
-        self._n_components = int(_pieces(np.zeros(mesh.n_faces, dtype=np.int64), self._pairs).max()) + 1
+        self._n_components = int(label_regions(np.zeros(mesh.n_faces, dtype=np.int64), self._pairs).max()) + 1
 
     @property
     def n_faces(self) -> int:
@@ -55,7 +54,7 @@ class KMeansPatches:
         """
         check_n_patches(n_patches, self.n_faces)
         clusters = _lloyd(self._features, self._areas, n_patches, self._max_iterations)
-        pieces = _pieces(clusters, self._pairs)
+        pieces = label_regions(clusters, self._pairs)
         n_pieces = int(pieces.max()) + 1
         if n_pieces < n_patches:  # faces that look the same share a cluster: take pieces apart
             inside = self._pairs[pieces[self._pairs[:, 0]] == pieces[self._pairs[:, 1]]]
@@ -112,10 +111,3 @@ def _means(features: np.ndarray, areas: np.ndarray, group: np.ndarray, n_groups:
     divisor = np.maximum(np.where(total > 0, total, n_faces), np.finfo(np.float64).tiny)
     sums = [np.bincount(group, weights=weights * column, minlength=n_groups) for column in features.T]
     return np.stack(sums, axis=1) / divisor[:, None]
-
-
-def _pieces(labels: Int[np.ndarray, " m"], pairs: Int[np.ndarray, "k 2"]) -> Int[np.ndarray, " m"]:
-    """Connected piece of equal label of each face, (m,) int64 from 0."""
-    same = pairs[labels[pairs[:, 0]] == labels[pairs[:, 1]]]
-    graph = sparse.coo_array((np.ones(len(same), dtype=bool), (same[:, 0], same[:, 1])), shape=(len(labels),) * 2)
-    return sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.int64)

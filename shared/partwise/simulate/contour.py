@@ -4,10 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import sparse
 
 from partwise.errors import DegenerateMeshError
-from partwise.geometry.adjacency import edge_adjacency, edge_components
+from partwise.geometry.adjacency import edge_adjacency, edge_components, label_regions
 from partwise.geometry.contouring import Field, Grid, grid_over
 from partwise.geometry.contouring import contour as contour_surface
 from partwise.geometry.faces import face_areas, face_centroids
@@ -69,7 +68,7 @@ def smooth_labels(mesh: TriMesh, labels: Int[np.ndarray, " m"], min_share: float
     adjacency = edge_adjacency(mesh)
     areas = face_areas(mesh)
     for _ in range(4):
-        region = _label_regions(labels, adjacency.faces)
+        region = label_regions(labels, adjacency.faces)
         share = np.bincount(region, weights=areas) / areas.sum()
         a, b = region[adjacency.faces].T
         label_of = np.zeros(len(share), dtype=np.int64)
@@ -94,9 +93,3 @@ def label_by_nearest(
 ) -> Int[np.ndarray, " m"]:
     """Part index of each face: that of the piece nearest to its centroid, (m,) int64."""
     return part_of_piece[nearest(face_centroids(mesh))]
-
-
-def _label_regions(labels: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    same = pairs[labels[pairs[:, 0]] == labels[pairs[:, 1]]]
-    graph = sparse.coo_array((np.ones(len(same), dtype=bool), (same[:, 0], same[:, 1])), shape=(len(labels),) * 2)
-    return sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.int64)

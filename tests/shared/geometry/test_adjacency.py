@@ -1,7 +1,7 @@
 import numpy as np
 from hypothesis import given, settings
 
-from partwise.geometry.adjacency import edge_adjacency, edge_components, vertex_neighbours
+from partwise.geometry.adjacency import edge_adjacency, edge_components, label_regions, vertex_neighbours
 from partwise.mesh import TriMesh
 from partwise.testing.meshes import closed_meshes, meshes
 
@@ -57,3 +57,9 @@ def test_vertex_neighbours_are_the_faces_with_a_common_vertex(mesh: TriMesh) -> 
 def test_components_are_counted_across_edges_and_not_vertices() -> None:
     bow_tie = TriMesh(POINTS, np.array([[0, 1, 2], [2, 4, 5], [2, 1, 3]]))
     assert edge_components(bow_tie).tolist() == [0, 1, 0]
+
+
+def test_regions_are_connected_and_of_one_label() -> None:
+    pairs = np.array([[0, 1], [1, 2], [2, 3], [3, 4]])
+    assert label_regions(np.array([7, 7, -1, 7, 7]), pairs).tolist() == [0, 0, 1, 2, 2]
+    assert label_regions(np.array([3, 3, 3], dtype=np.uint16), pairs[:1]).tolist() == [0, 0, 1]

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Int, UInt16
 
+from partwise.geometry.adjacency import label_regions
 from partwise.labels.operations import Assign, Paint, SegmentWide
 from partwise.segmentation.paint import Brush
 from partwise.simulate.annotator.kernels.scribble import scribble
 from partwise.simulate.annotator.motor import LEAST_WIDTH, Gesture, Hand, MotorModel, Tool
-from partwise.simulate.annotator.sight import Sight, regions
+from partwise.simulate.annotator.sight import Sight
 from partwise.unlabelled import NO_PART_ID
 
 N_REGIONS = 3
@@ -61,7 +62,7 @@ class Outlook:
 def segment_moves(outlook: Outlook) -> Iterator[Move]:
     """One click on the connected region of equal label that gains most."""
     sight = outlook.sight
-    region = regions(outlook.labels, sight.pairs)
+    region = label_regions(outlook.labels, sight.pairs)
     part, gain = sight.gain_table(outlook.labels, region)
     best = int(np.argmax(gain))
     if gain[best] <= LEAST_GAIN or part[best] == NO_PART_ID:
@@ -97,7 +98,7 @@ def paint_moves(outlook: Outlook) -> Iterator[Move]:
     """Drags through the largest wrong regions, each with several brushes. The brush stays clear of other parts."""
     sight = outlook.sight
     wanted = np.where(sight.is_wrong(outlook.labels), sight.belongs, NO_PART_ID)
-    region = regions(wanted, sight.pairs)
+    region = label_regions(wanted, sight.pairs)
     size = np.bincount(region, weights=np.where(wanted == NO_PART_ID, 0.0, sight.areas))
     for largest in np.argsort(-size, kind="stable")[:N_REGIONS]:
         if size[largest] <= 0:

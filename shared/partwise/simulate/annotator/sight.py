@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float, Int, Integer, UInt16
-from scipy import sparse
 from scipy.spatial import cKDTree
 
 from partwise.errors import LabelError, NotEnoughDataError
-from partwise.geometry.adjacency import edge_adjacency
+from partwise.geometry.adjacency import edge_adjacency, label_regions
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
 from partwise.unlabelled import NO_PART_ID
@@ -66,7 +65,7 @@ class Sight:
             pairs=pairs,
             belongs=belongs.astype(np.uint16),
             room=_room(points, belongs),
-            segments=regions(belongs, pairs),
+            segments=label_regions(belongs, pairs),
             tree=cKDTree(points),
         )
 
@@ -118,13 +117,6 @@ class Sight:
         nearest = np.asarray(self.tree.query(point, k=min(8, self.n_faces))[1]).ravel()
         facing = nearest[self.normals[nearest] @ view > 0]
         return int(facing[0] if len(facing) else nearest[0])
-
-
-def regions(values: Integer[np.ndarray, " m"], pairs: Int[np.ndarray, "k 2"]) -> Int[np.ndarray, " m"]:
-    """Connected region of equal value of each face, (m,) int64, from 0."""
-    joined = pairs[values[pairs[:, 0]] == values[pairs[:, 1]]]
-    graph = sparse.coo_array((np.ones(len(joined), dtype=bool), (joined[:, 0], joined[:, 1])), shape=(len(values),) * 2)
-    return np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def _room(points: Float[np.ndarray, "m 3"], belongs: Integer[np.ndarray, " m"]) -> Float[np.ndarray, " m"]:

@@ -5,7 +5,7 @@ import pytest
 
 from partwise.errors import LabelError, NotEnoughDataError
 from partwise.mesh import TriMesh
-from partwise.simulate.annotator.sight import Sight, regions
+from partwise.simulate.annotator.sight import Sight
 
 
 @pytest.fixture
@@ -69,13 +69,6 @@ def test_filling_waits_until_every_segment_has_some_of_its_part(sheet):
     labels[np.flatnonzero(belongs == 2)[0]] = 2
     assert sight.is_ready_to_fill(labels)
     assert not sight.is_ready_to_fill(belongs)  # nothing left to fill
-
-
-def test_regions_are_connected_and_of_one_value(sheet):
-    mesh, belongs = sheet
-    pairs = Sight.of(mesh, belongs).pairs
-    assert len(np.unique(regions(belongs, pairs))) == 2
-    np.testing.assert_array_equal(regions(np.ones_like(belongs), pairs), 0)
 
 
 def test_the_pointer_meets_the_face_under_it(desk):
