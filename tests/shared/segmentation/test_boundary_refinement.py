@@ -193,7 +193,7 @@ def test_refuses_shape_diameters_that_do_not_fit(wrong):
         ("band", 0.0), ("band", np.inf), ("band", np.nan), ("angle_weight", -0.1), ("angle_weight", 1.1),
         ("least_move_cost", 1.5), ("least_move_cost", np.nan), ("smoothness", -1.0), ("angle_floor", 0.0),
         ("angle_floor", 1.0), ("max_sweeps", 0), ("flatness", np.nan), ("concave_gain", -1.0), ("convex_gain", np.inf),
-        ("diameter_gain", -1.0),
+        ("diameter_gain", -1.0), ("form", "flat"),
     ],
 )  # fmt: skip
 def test_refuses_parameters_out_of_range(name, value):
