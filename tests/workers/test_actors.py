@@ -204,3 +204,10 @@ def test_a_packed_block_has_the_arrays_and_no_account(make_bench) -> None:
     np.testing.assert_array_equal(arrays.read(packed.address.name, 0, "values"), expected)
     with pytest.raises(NotFoundError):
         arrays.read(packed.address.name, 0, "_account")
+
+
+def test_the_packer_lets_go_of_what_it_is_told_to(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    first, second = run(start(bench), task_of(bench))
+    _Packer(bench.workspace.array_url).clear([first.staged_as, "first/1-gone"])
+    assert list(bench.workspace.arrays.staged_keys()) == [second.staged_as]

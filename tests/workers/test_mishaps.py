@@ -12,6 +12,7 @@ from partwise.workspace.progress import RunProgress
 from partwise_workers import pool
 from partwise_workers.actors import _StageWorker
 from partwise_workers.publishing import Published, nothing_else
+from partwise_workers.staging import sweep_staging
 from partwise_workers.tasks import StageCall, StagedResult
 
 pytestmark = pytest.mark.usefixtures("local_ray")
@@ -89,6 +90,45 @@ def test_a_packer_that_dies_is_replaced(make_bench, caplog) -> None:
     bench.run(also_publish=publish_and_kill)
     assert "the packer died" in caplog.text
     assert len(bench.done("second")) == 4
+
+
+def test_the_driver_leaves_the_clearing_of_staging_to_the_packer(make_bench, monkeypatch) -> None:
+    bench = make_bench(FOUR).with_workers(n_actors=1, block_shapes=2)
+    for name in ("delete_staged", "delete_staged_many"):
+        monkeypatch.setattr(bench.workspace.arrays, name, lambda _: raise_(AssertionError("the driver cleared")))
+    assert bench.run() == RunProgress(4, 0, 4)
+    assert list(bench.workspace.arrays.staged_keys()) == []
+
+
+def test_what_a_dead_packer_had_not_cleared_is_swept(make_bench, caplog) -> None:
+    bench = make_bench({"a.off": ""}).with_workers(n_actors=1)
+
+    def kill(shape_id: int, result: StagedResult, row: int) -> Published:
+        if result.stage == "second":
+            kill_actor("_Packer")
+        return nothing_else(shape_id, result, row)
+
+    assert bench.run(also_publish=kill) == RunProgress(1, 0, 1)
+    assert "stay staged until the sweep" in caplog.text
+    assert len(bench.workspace.arrays.staged_keys()) >= 1
+    sweep_staging(bench.workspace, bench.collection, bench.stages)
+    assert list(bench.workspace.arrays.staged_keys()) == []
+
+
+def test_a_store_that_refuses_to_clear_ends_the_run_after_the_commit(make_bench, tmp_path) -> None:
+    bench = make_bench({"a.off": ""}).with_workers(n_actors=1)
+    staged = tmp_path / "workspace" / "arrays" / "staging" / "second"
+
+    def replace_by_folders(shape_id: int, result: StagedResult, row: int) -> Published:
+        if result.stage == "second":
+            (path,) = staged.iterdir()
+            path.unlink()
+            path.mkdir()
+        return nothing_else(shape_id, result, row)
+
+    with pytest.raises((StoreError, NotFoundError), match="second"):
+        bench.run(also_publish=replace_by_folders)
+    assert set(bench.done("second")) == {"a.off"}
 
 
 def test_an_idle_actor_that_dies_costs_its_next_shape_an_attempt_only(make_bench, monkeypatch) -> None:

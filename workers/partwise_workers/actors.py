@@ -248,6 +248,10 @@ class _Packer:
             shapes.append({quantity: array for quantity, array in staged.items() if quantity != ACCOUNT})
         return Packed(self._arrays.write_block(kind, shapes) if shapes else None, tuple(found))
 
+    def clear(self, names: Sequence[str]) -> None:
+        """Lets go of staged results whose block the catalog names."""
+        self._arrays.delete_staged_many(names)
+
 
 StageWorker = ray.remote(_StageWorker)
 Packer = ray.remote(_Packer)

@@ -1,6 +1,8 @@
 """`Publisher`: gathers staged results into blocks, has a packer write each, and commits it to the catalog.
 
 A result is let go from staging only after the commit, so that whatever ends the run before is found by the next one.
+The packer does that too, between two blocks: it takes longer than the commit, and nothing waits for it. What it does
+not get to, the sweep at the end of this run or the next one does.
 """
 
 import logging
@@ -12,7 +14,6 @@ import ray
 from ray.exceptions import RayError
 
 from partwise.errors import WorkerError
-from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import StageCatalog
 from partwise.store.records import NewBlock, NewMesh, NewScore, NewStageRun
 from partwise_workers.actors import Packed
@@ -87,14 +88,12 @@ class Publisher:
     def __init__(
         self,
         catalog: StageCatalog,
-        arrays: ArrayStore,
         new_packer: Callable[[], Actor],
         stages: Sequence[Stage],
         block_shapes: int,
         also_publish: AlsoPublish = nothing_else,
     ) -> None:
         self._catalog = catalog
-        self._arrays = arrays
         self._new_packer = new_packer
         self._kinds = {stage.name: stage.block_kind for stage in stages}
         self._block_shapes = block_shapes
@@ -102,13 +101,14 @@ class Publisher:
         self._gathered = {stage.name: _Gathered() for stage in stages}
         self._packing: dict[Reference, _Packing] = {}
         self._arrived: set[Reference] = set()
+        self._clearing: set[Reference] = set()
         self._packer: Actor | None = None
         self._is_in_order = True
 
     @property
     def has_room(self) -> bool:
-        """Whether packing keeps up with what comes in."""
-        return len(self._packing) < MAX_PACKING * len(self._kinds)
+        """Whether packing and clearing keep up with what comes in."""
+        return max(len(self._packing), len(self._clearing)) < MAX_PACKING * len(self._kinds)
 
     def add(self, shape_id: int, result: StagedResult, attempts: int) -> None:
         """Takes a result; when there are enough for a block, has it packed."""
@@ -119,11 +119,11 @@ class Publisher:
             self._pack_gathered(up_to=result.stage)
 
     def references(self) -> list[Reference]:
-        """What to wait for: blocks that are being packed."""
-        return [reference for reference in self._packing if reference not in self._arrived]
+        """What to wait for: blocks that are being packed, and staged results that are being let go."""
+        return [*(reference for reference in self._packing if reference not in self._arrived), *self._clearing]
 
     def collect(self, ready: Sequence[Reference]) -> None:
-        """Publishes the blocks that are ready among `references`.
+        """Publishes the blocks that are ready among `references`, and forgets what was cleared.
 
         Raises
         ------
@@ -134,16 +134,19 @@ class Publisher:
         while self._packing and (first := next(iter(self._packing))) in self._arrived:
             self._arrived.remove(first)
             self._take(first)
+        for reference in self._clearing.intersection(ready):
+            self._clearing.remove(reference)
+            _note_cleared(reference)
 
     def flush(self) -> None:
-        """Packs and publishes all that was added.
+        """Packs and publishes all that was added, and has it let go from staging.
 
         Nothing, if an interrupt fell into publishing: what comes after must not be on record without what came before.
         """
         if not self._is_in_order:
             return
         self._pack_gathered()
-        while self._packing:
+        while self._packing or self._clearing:
             self.collect(ray.wait(self.references(), num_returns=1)[0])
 
     def close(self) -> None:
@@ -162,11 +165,15 @@ class Publisher:
                 return
 
     def _pack(self, stage: str, ready: tuple[_Ready, ...], attempt: int = 1) -> None:
+        packer = self._living_packer()
+        seconds = {each.result.staged_as: each.result.seconds for each in ready}
+        reference = packer.pack.remote(self._kinds[stage], seconds)
+        self._packing[reference] = _Packing(stage, ready, packer, attempt)
+
+    def _living_packer(self) -> Actor:
         if self._packer is None:
             self._packer = self._new_packer()
-        seconds = {each.result.staged_as: each.result.seconds for each in ready}
-        reference = self._packer.pack.remote(self._kinds[stage], seconds)
-        self._packing[reference] = _Packing(stage, ready, self._packer, attempt)
+        return self._packer
 
     def _take(self, reference: Reference) -> None:
         packing = self._packing.pop(reference)
@@ -208,8 +215,7 @@ class Publisher:
         )
         # If the commit failed, its block is not deleted here: the answer may have been lost after the commit. `gc`
         # knows which blocks are on record.
-        for name in packed.names:
-            self._arrays.delete_staged(name)
+        self._clearing.add(self._living_packer().clear.remote(packed.names))
 
     def _account_for(self, stage: str, gone: Sequence[_Ready]) -> None:
         """Results that left staging, or were replaced there, before they were packed: by another run as a rule."""
@@ -217,6 +223,15 @@ class Publisher:
         lost = [each.shape_id for each in gone if _key(runs.get(each.shape_id)) != each.result.key]
         if lost:
             logger.warning("staged results are gone or replaced; run again", extra={"stage": stage, "shapes": lost})
+
+
+def _note_cleared(reference: Reference) -> None:
+    """A store that refuses ends the run; a packer that died leaves what it had not cleared to the sweep."""
+    try:
+        ray.get(reference)
+    except RayError as error:
+        raise_own(error)
+        logger.warning("published results stay staged until the sweep", extra={"why": first_line(error)})
 
 
 def _run(stage: str, ready: _Ready, row: int) -> NewStageRun:

@@ -61,7 +61,7 @@ class StageRunner:
         self._array_url = array_url
         self._stages = list(stages)
         self._config = config
-        self._publisher = Publisher(catalog, arrays, self._new_packer, stages, config.block_shapes, also_publish)
+        self._publisher = Publisher(catalog, self._new_packer, stages, config.block_shapes, also_publish)
         self._on_event = on_event
         self._rules = Rules(
             {stage.name: limits_of(config.limits, stage.name, default_limits or StageLimits()) for stage in stages},

@@ -29,9 +29,9 @@ def sweep_staging(
             names = (StagedName.parse(key) for key in workspace.arrays.staged_keys(folder))
             left = (name for name in names if name is not None)
             while batch := list(islice(left, BATCH)):
-                for name in _useless(workspace, collection, upstream, batch):
-                    workspace.arrays.delete_staged(str(name))
-                    n_swept += 1
+                useless = [str(name) for name in _useless(workspace, collection, upstream, batch)]
+                workspace.arrays.delete_staged_many(useless)
+                n_swept += len(useless)
     return n_swept
 
 

@@ -34,6 +34,10 @@ class Objects(Protocol):
 
     def delete(self, key: str) -> None: ...
 
+    def delete_many(self, keys: Sequence[str]) -> None:
+        """As `delete` for each, in few requests."""
+        ...
+
     def delete_folder(self, folder: str) -> None: ...
 
     def keys(self, folder: str) -> Sequence[str]:
@@ -99,6 +103,10 @@ class LocalObjects:
     def delete(self, key: str) -> None:
         with storing(f"{self.root}", key):
             (self.root / key).unlink(missing_ok=True)
+
+    def delete_many(self, keys: Sequence[str]) -> None:
+        for key in keys:
+            self.delete(key)
 
     def delete_folder(self, folder: str) -> None:
         with storing(f"{self.root}", folder):
@@ -169,6 +177,18 @@ class RemoteObjects:
         with storing(self._where, key):
             if self._fs.isfile(self._path(key)):
                 self._fs.rm_file(self._path(key))
+
+    def delete_many(self, keys: Sequence[str]) -> None:
+        if not keys:
+            return
+        with storing(self._where, f"{keys[0]} and {len(keys) - 1:,} more"):
+            try:
+                self._fs.rm([self._path(key) for key in keys])
+                return
+            except FileNotFoundError:  # some file systems stop there, others take missing ones as deleted
+                pass
+        for key in keys:
+            self.delete(key)
 
     def delete_folder(self, folder: str) -> None:
         with storing(self._where, folder or "its top folder"):

@@ -135,6 +135,9 @@ class ZarrArrayStore:
     def delete_staged(self, key: str) -> None:
         self._objects.delete(_staged(key))
 
+    def delete_staged_many(self, keys: Sequence[str]) -> None:
+        self._objects.delete_many([_staged(key) for key in keys])
+
     # Open blocks
 
     def _opened(self, name: str) -> OpenBlock:

@@ -213,3 +213,16 @@ class ArrayStoreConformance:
         assert list(store.staged_keys()) == ["a/2", "b/1"]
         with raises(NotFoundError, "a/1"):
             store.read_staged("a/1")
+
+    def test_many_staged_are_deleted_at_once_whether_they_are_there_or_not(self, store: ArrayStore) -> None:
+        for key in ("a/1", "a/2", "b/1"):
+            store.stage(key, {"x": np.zeros(1)})
+        store.put_bytes("models/1", b"x")
+        store.delete_staged_many(["a/1", "a/gone", "b/1", "c/gone"])
+        assert list(store.staged_keys()) == ["a/2"]
+        store.delete_staged_many(["a/1", "a/gone"])
+        store.delete_staged_many([])
+        assert list(store.staged_keys()) == ["a/2"]
+        assert store.exists("models/1")
+        with raises(ParameterError, "key"):
+            store.delete_staged_many(["../models/1"])
