@@ -76,18 +76,27 @@ class FakeStage:
         values = np.frombuffer(data, dtype=np.uint8).astype(np.int64)
         if self.reads is not None:
             values = values + inputs.array(self.reads, "values")
-        summary = {"sum": int(values.sum()), "failed_steps": dict(inputs.failed_steps)}
+        passed_over = {"failed_steps": dict(inputs.failed_steps), "refused_steps": dict(inputs.refused_steps)}
+        summary = {"sum": int(values.sum()), **passed_over}
         return StageResult({"values": values * (1 + self.parameter)}, summary)
 
     def _take_steps(self, inputs: ShapeInputs, behaviours: Mapping[str, str]) -> None:
-        """Steps `0`, `1`, …, until one does not fail; the source has their behaviour as `stage 0: behaviour`."""
+        """Steps `0`, `1`, …, until one does not fail; the source has their behaviour as `stage 0: behaviour`.
+
+        The stage goes on after one that `is refused`.
+        """
         if self.n_steps == 1:
             return
         for step in map(str, range(self.n_steps)):
-            if step not in inputs.failed_steps:
-                inputs.begin(step)
-                self._behave(behaviours.get(f"{self.name} {step}", ""))
+            if step in inputs.failed_steps or step in inputs.refused_steps:
+                continue
+            behaviour = behaviours.get(f"{self.name} {step}", "")
+            inputs.begin(step)
+            self._behave(behaviour)
+            if behaviour != "is refused":
                 return
+            note(self.log, f"refused-{step}")
+            inputs.refuse(step, {"why": "it is not near enough"})
         raise MeshError("a step must be left but none is; look at the file")
 
     def _behave(self, behaviour: str) -> None:

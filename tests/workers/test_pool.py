@@ -1,5 +1,6 @@
-"""The pool by itself: what it makes of actors that are done when nobody has looked for a while."""
+"""The pool by itself: what it makes of actors that nobody has looked at for a while."""
 
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -8,29 +9,57 @@ import ray
 from partwise.config import StageLimits
 from partwise_workers import pool
 from partwise_workers.actors import StageWorker
+from partwise_workers.last_words import Progress, note_progress, read_progress
 from partwise_workers.pool import ActorPool
 from partwise_workers.supervision import Rules
+from partwise_workers.tasks import StagedName
 
 pytestmark = pytest.mark.usefixtures("local_ray")
+
+
+def pool_of(bench) -> ActorPool:
+    """A pool of one actor, which has started and got the one task."""
+    limits = {stage.name: StageLimits() for stage in bench.stages}
+    n_steps = {stage.name: stage.n_steps for stage in bench.stages}
+    url = bench.workspace.array_url
+    workers = ActorPool(
+        lambda actor_id: StageWorker.remote(url, bench.stages, actor_id, limits),
+        1,
+        Rules(limits, n_steps, max_attempts=1, recycle_after=200),
+        bench.workspace.arrays,
+    )
+    workers.collect(ray.wait(workers.references())[0])
+    workers.submit(next(bench.plan()))
+    return workers
 
 
 def test_what_finished_while_the_driver_was_busy_is_taken_though_its_deadline_has_passed(
     make_bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bench = make_bench({"a.off": ""})
-    limits = {stage.name: StageLimits() for stage in bench.stages}
-    arrays, url = bench.workspace.arrays, bench.workspace.array_url
-    workers = ActorPool(
-        lambda actor_id: StageWorker.remote(url, bench.stages, actor_id, limits),
-        1,
-        Rules(limits, dict.fromkeys(limits, 1), max_attempts=1, recycle_after=200),
-        arrays,
-    )
-    workers.collect(ray.wait(workers.references())[0])
-    workers.submit(next(bench.plan()))
+    workers = pool_of(bench)
     ray.wait(workers.references())
     monkeypatch.setattr(pool, "time", SimpleNamespace(monotonic=lambda: float("inf")))
     assert workers.collect([]) == []  # its first stage is done, and the second one is begun
     assert not workers.is_mourning
     assert workers.n_in_flight == 1
     workers.close()
+
+
+def test_each_step_has_the_deadline_to_itself(make_bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = make_bench({"a.off": "first 0: hangs"}).with_stages(first={"n_steps": 2})
+    arrays, deadline_s = bench.workspace.arrays, StageLimits().deadline_s
+    task = next(bench.plan())
+    name = StagedName("first", task.shape_id, dict(task.stage_keys)["first"])
+    workers = pool_of(bench)
+    while read_progress(arrays, name) is None:
+        ray.wait(workers.references(), timeout=0.1)
+    note_progress(arrays, name, Progress("1", 0.9 * deadline_s, {}))
+    now = time.monotonic()
+    looks = []
+    for later in (1.5, 2.0):
+        monkeypatch.setattr(pool, "time", SimpleNamespace(monotonic=lambda later=later: now + later * deadline_s))
+        workers.collect([])
+        looks.append(workers.is_mourning)
+    workers.close()
+    assert looks == [False, True]

@@ -37,7 +37,9 @@ class FakeInputs:
 
     mesh: TriMesh
     failed_steps: Mapping[str, str] = field(default_factory=dict)
+    refused_steps: Mapping[str, Mapping] = field(default_factory=dict)
     begun: list[str] = field(default_factory=list)
+    refused: dict[str, Mapping] = field(default_factory=dict)
 
     def source(self) -> tuple[bytes, str]:
         raise AssertionError("the stage reads the mesh stage's arrays, not the source")
@@ -48,6 +50,9 @@ class FakeInputs:
 
     def begin(self, step: str) -> None:
         self.begun.append(step)
+
+    def refuse(self, step: str, record: Mapping) -> None:
+        self.refused[step] = json.loads(json.dumps(record))  # as it comes back on the next try
 
 
 @contextmanager
@@ -135,6 +140,28 @@ def test_steps_that_ended_the_process_are_passed_over_and_recorded() -> None:
     assert [level["absent"] for level in result.summary["levels"]][2] == "it died"
 
 
+def test_attempts_that_were_refused_before_are_not_made_again_and_keep_their_record() -> None:
+    first = FakeInputs(TWO_BALLS)
+    with opened() as run:
+        with pytest.raises(StageRefusedError):
+            run(first)
+        assert list(first.refused) == first.begun == ["attempt 0", "attempt 1", "attempt 2"]
+        again = FakeInputs(TWO_BALLS, refused_steps=first.refused)
+        with pytest.raises(StageRefusedError, match=r"all 3 attempts were refused") as caught:
+            run(again)
+    assert again.begun == []
+    assert json.loads(json.dumps(caught.value.detail["attempts"][1:])) == list(first.refused.values())
+
+
+def test_a_level_that_was_refused_before_is_not_made_again_and_keeps_its_record() -> None:
+    record = {"method": "quadric", "distance": 0.7, "absent": "it is too far", "core_s": 12.5}
+    inputs = FakeInputs(BALL, refused_steps={"level 1000": record})
+    with opened() as run:
+        result = run(inputs)
+    assert inputs.begun == ["level 2000", "level 500"]
+    assert result.summary["levels"][1] == {"n_faces": 1000, "reached": None, "mesh_hash": None, **record}
+
+
 def test_without_its_own_level_a_shape_gets_the_next_coarser() -> None:
     with opened() as run:
         result = run(FakeInputs(BOWL, {"level 1000": "it died"}))
@@ -166,7 +193,9 @@ def test_a_level_whose_library_raises_is_absent_and_the_others_made(monkeypatch:
 
     monkeypatch.setattr(Ladder, "level", raise_at_the_second)
     with opened() as run:
-        result = run(FakeInputs(BOWL))
+        inputs = FakeInputs(BOWL)
+        result = run(inputs)
+    assert list(inputs.refused) == ["level 1000"]
     absent = [each["absent"] for each in result.summary["levels"]]
     assert absent == [None, "MemoryError: bad allocation", None]
     assert result.summary["working_level"] == 500

@@ -14,7 +14,15 @@ from hypothesis import strategies as st
 
 from partwise.store.open import open_array_store
 from partwise_workers import sentinel
-from partwise_workers.last_words import LastWords, note_step, progress_name, take_last_words, take_step
+from partwise_workers.last_words import (
+    LastWords,
+    Progress,
+    note_progress,
+    progress_name,
+    read_progress,
+    take_last_words,
+    take_progress,
+)
 from partwise_workers.sentinel import LOG_BYTES, MARK, Log, resident_bytes
 from partwise_workers.tasks import StagedName
 
@@ -155,14 +163,16 @@ def test_last_words_are_taken_once(tmp_path: Path) -> None:
 
 def test_the_step_last_begun_is_found(tmp_path: Path) -> None:
     arrays, name = open_array_store(str(tmp_path)), StagedName("remesh", 3, "ab")
-    note_step(arrays, name, "attempt 0")
-    note_step(arrays, name, "attempt 1")
-    assert take_step(arrays, name) == "attempt 1"
-    assert take_step(arrays, name) is None
+    note_progress(arrays, name, Progress("attempt 0", 0.5, {}))
+    second = Progress("attempt 1", 20.5, {"attempt 0": {"refused": "too far"}})
+    note_progress(arrays, name, second)
+    assert read_progress(arrays, name) == second
+    assert take_progress(arrays, name) == second
+    assert take_progress(arrays, name) is None
 
 
 def test_a_damaged_step_counts_as_none(tmp_path: Path) -> None:
     arrays, name = open_array_store(str(tmp_path)), StagedName("remesh", 3, "ab")
-    note_step(arrays, name, "attempt 0")
+    note_progress(arrays, name, Progress("attempt 0", 0.5, {}))
     (tmp_path / "staging" / progress_name(name)).write_bytes(b"half")
-    assert take_step(arrays, name) is None
+    assert take_progress(arrays, name) is None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from partwise.store.records import NewBlock, NewFailure, NewStageRun
-from partwise_workers.last_words import LastWords, last_words_name, note_step, progress_name
+from partwise_workers.last_words import LastWords, Progress, last_words_name, note_progress, progress_name
 from partwise_workers.plan import chain_keys
 from partwise_workers.staging import sweep_staging
 from partwise_workers.tasks import StagedName
@@ -79,7 +79,7 @@ def test_the_number_swept_is_told(make_bench) -> None:
 def leave_behind(bench, stage: str, shape_id: int, key: str) -> list[str]:
     """The step and the last words of a process that died."""
     arrays, name = bench.workspace.arrays, StagedName(stage, shape_id, key)
-    note_step(arrays, name, "attempt 0")
+    note_progress(arrays, name, Progress("attempt 0", 0.0, {}))
     arrays.stage(last_words_name(name, "af"), LastWords("log", 1, False).arrays())
     return sorted([progress_name(name), last_words_name(name, "af")])
 

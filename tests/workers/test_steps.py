@@ -12,7 +12,7 @@ from partwise_workers.events import ActorRestarted, InFlight, RunEvent, StageDon
 
 SOURCES = {
     "good.off": "",
-    "stubborn.off": "second 0: hangs\nsecond 1: reads address zero",
+    "stubborn.off": "second 0: is refused\nsecond 1: hangs\nsecond 2: reads address zero",
     "hopeless.off": "second 0: refuses",
     "hungry.off": "first: allocates without end",
     "swollen.off": "first: swells",
@@ -28,7 +28,7 @@ def ran(
 ) -> Iterator:
     with bench_in(tmp_path_factory.mktemp("steps"), SOURCES) as bench:
         bench = bench.with_limits(deadline_s=DEADLINE_S, memory_gb=MEMORY_GB).with_workers(recycle_after=1)
-        bench = bench.with_stages(second={"n_steps": 3})
+        bench = bench.with_stages(second={"n_steps": 4})
         events: list[RunEvent] = []
         bench.run(on_event=events.append)
         yield bench, events
@@ -37,10 +37,15 @@ def ran(
 def test_a_shape_goes_on_with_the_step_after_those_that_died(ran) -> None:
     run = ran[0].done("second")["stubborn.off"]
     assert run.summary["failed_steps"] == {
-        "0": f"it took longer than deadline_s = {DEADLINE_S:g}",
-        "1": "its process died (Segmentation fault), 2 times",
+        "1": f"it took longer than deadline_s = {DEADLINE_S:g}",
+        "2": "its process died (Segmentation fault), 2 times",
     }
     assert run.attempts == 4
+
+
+def test_a_step_that_was_refused_is_not_made_again_after_a_death(ran) -> None:
+    assert ran[0].done("second")["stubborn.off"].summary["refused_steps"] == {"0": {"why": "it is not near enough"}}
+    assert ran[0].n_noted("refused") == 1
 
 
 def test_what_other_stages_had_finished_is_not_made_again(ran) -> None:

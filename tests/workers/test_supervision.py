@@ -1,5 +1,7 @@
 """What the rules make of processes that die, without any process."""
 
+from dataclasses import replace
+
 import pytest
 
 from partwise.config import LimitsConfig, StageLimits
@@ -76,6 +78,23 @@ def test_tries_are_bounded_by_steps_times_attempts(n_steps: int, max_attempts: i
     while lives(job, CRASH, str(len(job.call.failed_steps)), n_steps=n_steps, max_attempts=max_attempts):
         n_tries += 1
     assert n_tries == job.n_tries == n_steps * max_attempts
+
+
+def test_a_refused_step_is_passed_over_after_every_death() -> None:
+    job = Job(TASK)
+    for refused in ({"0": {"why": "far"}}, {}):  # the second process dies before it says anything
+        job.begin()
+        assert job.bury(replace(death(CRASH, "1"), refused=refused), rules(n_steps=3)) is None
+        assert job.call.refused_steps == {"0": {"why": "far"}}
+
+
+def test_refused_steps_of_one_stage_are_not_those_of_another() -> None:
+    job = Job(TASK)
+    job.begin()
+    job.bury(replace(death(CRASH, "1"), refused={"0": {}}), rules(n_steps=3))
+    job.begin()
+    job.add(done("first"))
+    assert job.call.refused_steps == {}
 
 
 def test_steps_of_one_stage_are_not_those_of_another() -> None:

@@ -21,7 +21,7 @@ from partwise.store.blocks import BlockKind
 from partwise.store.open import open_array_store
 from partwise.store.ragged import ragged_quantities
 from partwise.store.records import FailureKind
-from partwise_workers.last_words import last_words_name, note_step, progress_name
+from partwise_workers.last_words import Progress, last_words_name, note_progress, progress_name
 from partwise_workers.sentinel import resident_bytes
 from partwise_workers.stage import RunStage, Stage, StageResult, reason_of
 from partwise_workers.tasks import ShapeTask, StageCall, StagedName, StagedResult, StageFailure, StageReport
@@ -55,20 +55,32 @@ class _TaskInputs:
 
 
 class _CallInputs:
-    """Implements `ShapeInputs` for one try of one stage: a task's inputs, and the stage's steps."""
+    """Implements `ShapeInputs` for one try of one stage: a task's inputs, and the stage's steps.
 
-    def __init__(self, inputs: _TaskInputs, call: StageCall, on_step: Callable[[str], None]) -> None:
+    What is refused is told with the next step, as a process that dies in between has nothing to do there.
+    """
+
+    def __init__(self, inputs: _TaskInputs, call: StageCall, on_step: Callable[[Progress], None]) -> None:
         self.source = inputs.source
         self.array = inputs.array
         self._failed_steps = call.failed_steps
+        self._refused_steps = dict(call.refused_steps)
         self._on_step = on_step
+        self._started = time.monotonic()
 
     @property
     def failed_steps(self) -> Mapping[str, str]:
         return self._failed_steps
 
+    @property
+    def refused_steps(self) -> Mapping[str, Mapping[str, Any]]:
+        return self._refused_steps
+
     def begin(self, step: str) -> None:
-        self._on_step(step)
+        self._on_step(Progress(step, time.monotonic() - self._started, self._refused_steps))
+
+    def refuse(self, step: str, record: Mapping[str, Any]) -> None:
+        self._refused_steps[step] = record
 
 
 class _StageWorker:
@@ -152,10 +164,10 @@ class _StageWorker:
         if self._stages[call.stage].n_steps > 1:
             self._arrays.delete_staged(progress_name(call.name))
 
-    def _begin(self, call: StageCall, step: str | None) -> None:
+    def _begin(self, call: StageCall, progress: Progress | None) -> None:
         """Tells the driver and the sentinel which step the stage is in, None before the first."""
-        if step is not None:
-            note_step(self._arrays, call.name, step)
+        if progress is not None:
+            note_progress(self._arrays, call.name, progress)
         if self._limits is not None:
             self._watch.at(last_words_name(call.name, self._actor_id), self._limits[call.stage].memory_gb)
 
@@ -167,7 +179,7 @@ class _StageWorker:
             return None
 
     def _make(self, call: StageCall, inputs: _TaskInputs, started: float) -> dict[str, np.ndarray]:
-        own = _CallInputs(inputs, call, lambda step: self._begin(call, step))
+        own = _CallInputs(inputs, call, lambda progress: self._begin(call, progress))
         result: StageResult = self._opened[call.stage](own)
         ragged_quantities(
             self._stages[call.stage].block_kind, [result.arrays]

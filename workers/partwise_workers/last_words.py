@@ -1,4 +1,4 @@
-"""What a process that died leaves behind in staging: the step that it was in, and its sentinel's last words.
+"""What a process leaves in staging for its driver: the step that it is in, and its sentinel's last words.
 
 The array store is what every node of a cluster reaches, so that the driver reads both wherever the process was.
 """
@@ -63,26 +63,50 @@ def progress_name(name: StagedName) -> str:
     return f"{PROGRESS}/{name}"
 
 
-def note_step(arrays: ArrayStore, name: StagedName, step: str) -> None:
-    """Says which step a stage is in."""
-    arrays.stage(progress_name(name), _staged({"step": step}))
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """step : that a stage is in. began_s : seconds into its call; clocks of two machines are never compared.
+
+    refused : steps before it that it has refused, each with the stage's record of it.
+    """
+
+    step: str
+    began_s: float
+    refused: Mapping[str, Mapping[str, Any]]
 
 
-def take_step(arrays: ArrayStore, name: StagedName) -> str | None:
-    """The step that a stage was in when its process died; None if it had not begun one."""
+def note_progress(arrays: ArrayStore, name: StagedName, progress: Progress) -> None:
+    """Says how far a stage has come."""
+    arrays.stage(progress_name(name), _staged(asdict(progress)))
+
+
+def read_progress(arrays: ArrayStore, name: StagedName) -> Progress | None:
+    """How far a stage has come; None if it has not begun a step."""
+    content = _read(arrays, progress_name(name))
+    return None if content is None else Progress(**content)
+
+
+def take_progress(arrays: ArrayStore, name: StagedName) -> Progress | None:
+    """Reads and deletes it, when the process has died."""
     content = _take(arrays, progress_name(name))
-    return None if content is None else content["step"]
+    return None if content is None else Progress(**content)
 
 
 def _staged(content: Mapping[str, Any]) -> dict[str, np.ndarray]:
     return {_CONTENT: np.frombuffer(json.dumps(content).encode(), dtype=np.uint8)}
 
 
-def _take(arrays: ArrayStore, staged_as: str) -> dict[str, Any] | None:
+def _read(arrays: ArrayStore, staged_as: str) -> dict[str, Any] | None:
     """None for a damaged object too: it is an aid, and the store being down shows soon enough elsewhere."""
     try:
         content: dict[str, Any] = json.loads(arrays.read_staged(staged_as)[_CONTENT].tobytes())
     except (NotFoundError, StoreError):
         return None
-    arrays.delete_staged(staged_as)
+    return content
+
+
+def _take(arrays: ArrayStore, staged_as: str) -> dict[str, Any] | None:
+    content = _read(arrays, staged_as)
+    if content is not None:
+        arrays.delete_staged(staged_as)
     return content

@@ -19,7 +19,7 @@ from partwise.store.array_store import ArrayStore
 from partwise.store.records import FailureKind
 from partwise_workers.cluster import require_living_node
 from partwise_workers.events import ActorRestarted, OnEvent, ignore_events
-from partwise_workers.last_words import LastWords, last_words_name, take_last_words, take_step
+from partwise_workers.last_words import LastWords, last_words_name, read_progress, take_last_words, take_progress
 from partwise_workers.supervision import Death, Job, Rules, why_large, why_late
 from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageFailure, StageReport
 from partwise_workers.watch import BYTES_PER_GB
@@ -54,9 +54,12 @@ class _Worker:
 
 @dataclass(slots=True)
 class _Running:
+    """A call on its way. step_began : of the step that it was last seen in; at first, of the call."""
+
     job: Job
     worker: _Worker
     started: float
+    step_began: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +199,8 @@ class ActorPool:
 
     def _call(self, job: Job, worker: _Worker) -> None:
         """Sends the job's next stage."""
-        self._running[worker.actor.run.remote(job.begin())] = _Running(job, worker, time.monotonic())
+        now = time.monotonic()
+        self._running[worker.actor.run.remote(job.begin())] = _Running(job, worker, now, now)
 
     def _take(self, reference: Reference) -> list[ShapeOutcome]:
         running = self._running.pop(reference)
@@ -233,23 +237,29 @@ class ActorPool:
         return resident_bytes - worker.base_bytes > RETAINED_SHARE * (self._lowest_ceiling - worker.base_bytes)
 
     def _judge_late_ones(self) -> list[ShapeOutcome]:
-        """Stops what is past its deadline, unless it has finished while the driver was busy with other things."""
-        now = time.monotonic()
-        late = [
-            reference
-            for reference, running in self._running.items()
-            if now - running.started > self._deadline_s(running)
-        ]
+        """Stops what is past its deadline, unless it has gone on while the driver was busy with other things."""
+        late = [reference for reference, running in self._running.items() if self._is_late(running)]
         if not late:
             return []
         done, hung = ray.wait(late, num_returns=len(late), timeout=0)
         for reference in hung:
+            if self._is_in_another_step(self._running[reference]):
+                continue
             running = self._running.pop(reference)
             self._lose(running, FailureKind.DEADLINE, why_late(self._rules.limits[running.job.call.stage]))
         return [outcome for reference in done for outcome in self._take(reference)]
 
-    def _deadline_s(self, running: _Running) -> float:
-        return self._rules.limits[running.job.call.stage].deadline_s
+    def _is_late(self, running: _Running) -> bool:
+        return time.monotonic() - running.step_began > self._rules.limits[running.job.call.stage].deadline_s
+
+    def _is_in_another_step(self, running: _Running) -> bool:
+        """Looks up which step a late call is in by now; whether that one is within its own deadline."""
+        call = running.job.call
+        progress = read_progress(self._arrays, call.name) if self._rules.n_steps[call.stage] > 1 else None
+        if progress is None:
+            return False
+        running.step_began = running.started + progress.began_s
+        return not self._is_late(running)
 
     def _lose(self, running: _Running, kind: FailureKind, why: str) -> None:
         """Replaces the actor, and waits for its last words."""
@@ -280,13 +290,14 @@ class ActorPool:
     def _death(self, dead: _Dead, words: LastWords) -> Death:
         call = dead.job.call
         has_steps = self._rules.n_steps[call.stage] > 1
-        step = take_step(self._arrays, call.name) if has_steps else None
+        progress = take_progress(self._arrays, call.name) if has_steps else None
+        step, refused = (None, {}) if progress is None else (progress.step, progress.refused)
         kind, why = dead.kind, dead.why
         if words.is_over_memory:
             kind, why = FailureKind.MEMORY, why_large(self._rules.limits[call.stage], words.peak_bytes)
         elif kind is FailureKind.CRASH and words.fatal_error is not None:
             why = f"its process died ({words.fatal_error})"
-        return Death(kind, why, step, words.log, dead.seconds)
+        return Death(kind, why, step, words.log, dead.seconds, refused)
 
     def _recycle(self, worker: _Worker) -> None:
         """Replaces an actor that has done its share, or holds too much."""

@@ -45,11 +45,22 @@ class ShapeInputs(Protocol):
         Whoever runs the stage again skips them, and says so in the summary.
         """
 
-    def begin(self, step: str) -> None:
-        """Says which of its steps the stage is in from now on. For stages with `n_steps` > 1 only.
+    @property
+    def refused_steps(self) -> Mapping[str, Mapping[str, Any]]:
+        """Steps of this stage that it refused on earlier tries of this shape, each with its record, in order.
 
-        The name is made of letters, digits, `.`, `_`, `-` and spaces, and is the same on every try.
+        Whoever runs the stage again passes them over, as they would take as long to be refused again.
         """
+
+    def begin(self, step: str) -> None:
+        """Says which of its steps the stage is in from now on; each has the stage's deadline to itself.
+
+        For stages with `n_steps` > 1 only. The name is made of letters, digits, `.`, `_`, `-` and spaces, and is the
+        same on every try.
+        """
+
+    def refuse(self, step: str, record: Mapping[str, Any]) -> None:
+        """Says that a step has ended without a result. record : JSON-able, all that the summary is to say of it."""
 
 
 RunStage: TypeAlias = Callable[[ShapeInputs], StageResult]

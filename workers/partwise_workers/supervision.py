@@ -3,12 +3,15 @@
 A stage has steps (`Stage.n_steps`), most have one. A step that takes too long or too much memory would do so again, and
 has failed at once. A step whose process died by itself may have been unlucky: it is tried `max_attempts` times in all.
 A shape goes on while its stage has steps left, so that a stage is tried `n_steps` x `max_attempts` times at most.
-Failed steps are known to the driver only: a run that is started anew begins with the first step again.
+Each step has the deadline to itself. One that the stage got through and refused is not run again on later tries; what
+it accepted is, as only the stage's end result is kept.
+Failed and refused steps are known to the driver only: a run that is started anew begins with the first step again.
 """
 
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from partwise.config import LimitsConfig, StageLimits
 from partwise.store.records import FailureKind
@@ -33,13 +36,17 @@ class Rules:
 
 @dataclass(frozen=True, slots=True)
 class Death:
-    """How a process ended. step : that its stage was in, None outside of steps. why : without the remedy."""
+    """How a process ended. step : that its stage was in, None outside of steps. why : without the remedy.
+
+    refused : steps that its stage had refused by then, each with the stage's record of it.
+    """
 
     kind: FailureKind
     why: str
     step: str | None
     log: str
     seconds: float
+    refused: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -57,6 +64,7 @@ class Job:
     _crashes: Counter[tuple[str, str | None]] = field(default_factory=Counter)
     _deaths: dict[str, Death] = field(default_factory=dict)
     _failed_steps: dict[str, dict[str, str]] = field(default_factory=dict)
+    _refused_steps: dict[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
 
     @property
     def is_done(self) -> bool:
@@ -67,7 +75,9 @@ class Job:
     def call(self) -> StageCall:
         """The stage that is next, or at work."""
         stage, key = self.task.stage_keys[len(self._results)]
-        return StageCall(self.task, stage, key, dict(self._failed_steps.get(stage, {})))
+        return StageCall(
+            self.task, stage, key, dict(self._failed_steps.get(stage, {})), self._refused_steps.get(stage, {})
+        )
 
     @property
     def n_tries(self) -> int:
@@ -107,6 +117,7 @@ class Job:
         """Takes in that the process of the present call died; None if the shape is to be tried again."""
         call, why = self.call, death.why
         self._deaths[call.stage] = death
+        self._refused_steps[call.stage] = {**call.refused_steps, **death.refused}
         if death.kind is FailureKind.CRASH:
             place = (call.stage, death.step)
             self._crashes[place] += 1

@@ -47,12 +47,16 @@ class StagedResult:
 
 @dataclass(frozen=True, slots=True)
 class StageCall:
-    """One stage of a task, for one actor. `failed_steps` ended processes on earlier tries, each with why."""
+    """One stage of a task, for one actor. Of earlier tries `failed_steps` ended the process, each with why.
+
+    refused_steps : that earlier tries got through and the stage refused, each with its record of it.
+    """
 
     task: ShapeTask
     stage: str
     key: str
     failed_steps: Mapping[str, str]
+    refused_steps: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
     def name(self) -> "StagedName":

@@ -31,6 +31,9 @@ logger = logging.getLogger(__name__)
 
 NAME = "remesh"
 
+LEVEL_RECORD = ("method", "distance", "absent", "core_s")
+"""What goes on record of a level without a mesh."""
+
 
 @dataclass(frozen=True, slots=True)
 class RemeshStage:
@@ -102,7 +105,7 @@ class RemeshStage:
         return self._result(original, working, result)
 
     def _attempts(self, ladder: "Ladder", inputs: ShapeInputs) -> list["AttemptResult"]:
-        """Tries one after the other until one is accepted; those that ended the process before are passed over."""
+        """Tries one after the other until one is accepted; those that failed on an earlier try are passed over."""
         results = [ladder.as_is()]
         for index, parameters in enumerate(self.parameters.attempts):
             if results[-1].surface is not None:
@@ -110,9 +113,13 @@ class RemeshStage:
             step = f"attempt {index}"
             if step in inputs.failed_steps:
                 results.append(_not_made(parameters, inputs.failed_steps[step]))
+            elif step in inputs.refused_steps:
+                results.append(_recorded_attempt(inputs.refused_steps[step]))
             else:
                 inputs.begin(step)
                 results.append(_attempted(ladder, index, parameters))
+                if results[-1].surface is None:
+                    inputs.refuse(step, asdict(results[-1].attempt))
         return results
 
     def _levels(self, ladder: "Ladder", surface: TriMesh, inputs: ShapeInputs) -> Iterator["Level"]:
@@ -120,9 +127,14 @@ class RemeshStage:
             step = f"level {n_faces}"
             if step in inputs.failed_steps:
                 yield _absent(n_faces, inputs.failed_steps[step])
+            elif step in inputs.refused_steps:
+                yield _recorded_level(n_faces, inputs.refused_steps[step])
             else:
                 inputs.begin(step)
-                yield _made_level(ladder, surface, n_faces)
+                level = _made_level(ladder, surface, n_faces)
+                if level.mesh is None:
+                    inputs.refuse(step, {name: getattr(level, name) for name in LEVEL_RECORD})
+                yield level
 
     def _result(self, original: TriMesh, working: TriMesh, result: "RemeshResult") -> StageResult:
         attempts = [asdict(attempt) for attempt in result.attempts]
@@ -203,6 +215,19 @@ def _made_level(ladder: "Ladder", surface: TriMesh, n_faces: int) -> "Level":
     except Exception as error:  # as for attempts
         logger.warning("a level failed", exc_info=True)
         return _absent(n_faces, reason_of(error), time.process_time() - started)
+
+
+def _recorded_attempt(record: Mapping[str, Any]) -> "AttemptResult":
+    """An attempt that was refused on an earlier try, as it was."""
+    from partwise.remesh.ladder import Attempt, AttemptResult
+
+    return AttemptResult(Attempt(**record), None)
+
+
+def _recorded_level(n_faces: int, record: Mapping[str, Any]) -> "Level":
+    from partwise.remesh.ladder import Level
+
+    return Level(n_faces, None, **record)
 
 
 def _not_made(parameters: Any, why: str, core_s: float = 0.0) -> "AttemptResult":
