@@ -6,12 +6,16 @@ from typing import Annotated, Literal
 from pydantic import Field, JsonValue
 
 from partwise.labels.schema import PartSchema
+from partwise.store.queue_settings import MAX_LABELS_PER_SHAPE
 from partwise.store.records import Collection
 from partwise_service.schemas.base import NO_NUL, WHOLE, Answer, AnyId, Request
 
 PartName = Annotated[str, Field(min_length=1, max_length=64)]
 Colour = Annotated[str, Field(pattern="^#[0-9A-Fa-f]{6}$", description="`#RRGGBB`.")]
 Gloss = Annotated[str, NO_NUL, Field(max_length=2_000, description="What the part is, for annotators.")]
+
+
+Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class CollectionOut(Answer):
@@ -39,11 +43,16 @@ class NewCollection(Request):
 
 
 class SettingsChange(Request):
-    """What is given is set, the rest stays."""
+    """What is given is set, the rest stays. What each means is in docs/configuration.md and docs/service.md."""
 
     up: Literal["x", "y", "z"] | None = None
     working_faces: Annotated[int, Field(ge=100, le=1_000_000), WHOLE] | None = None
     remesh: Literal["auto", "never"] | None = None
+    labels_per_shape: Annotated[int, Field(ge=1, le=MAX_LABELS_PER_SHAPE), WHOLE] | None = None
+    agreement: Share | None = None
+    honeypot_share: Share | None = None
+    review: bool | None = None
+    train_after: Annotated[int, Field(ge=0, le=1_000_000), WHOLE] | None = None
 
 
 class PartOut(Answer):

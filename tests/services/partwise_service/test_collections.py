@@ -1,5 +1,7 @@
 """/collections: what exists for whom, settings, making one."""
 
+import pytest
+
 from partwise.store.records import Role
 
 
@@ -26,6 +28,24 @@ def test_a_collection_outside_the_scope_looks_like_none(annotator, mugs) -> None
 def test_an_operator_changes_settings_and_the_rest_stays(operator, mugs) -> None:
     path = f"/collections/{mugs.collection_id}/settings"
     assert operator.patch(path, json={"working_faces": 5_000}).json()["settings"] == {"up": "y", "working_faces": 5_000}
+
+
+def test_an_operator_changes_how_work_is_handed_out(operator, mugs) -> None:
+    path = f"/collections/{mugs.collection_id}/settings"
+    change = {
+        "labels_per_shape": 3,
+        "agreement": 0.8,
+        "honeypot_share": 0.1,
+        "review": True,
+        "train_after": 0,
+        "up": "z",
+    }
+    assert operator.patch(path, json=change).json()["settings"] == change
+
+
+@pytest.mark.parametrize("change", [{"labels_per_shape": 10}, {"agreement": 2}, {"review": 1}, {"train_after": -1}])
+def test_a_setting_out_of_range_is_refused(operator, mugs, change) -> None:
+    assert operator.patch(f"/collections/{mugs.collection_id}/settings", json=change).status_code == 422
 
 
 def test_a_change_of_nothing_changes_nothing(operator, mugs) -> None:
