@@ -7,11 +7,11 @@ from jaxtyping import Float
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from partwise.errors import ParameterError
 from partwise.geometry.adjacency import EdgeAdjacency
 from partwise.geometry.dihedral import is_concave, normal_angles
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids, face_normals
 from partwise.mesh import TriMesh
+from partwise.segmentation.given_diameters import checked_diameters
 
 SCALE = 0.01
 """Width over which normals and diameters are smoothed, as a fraction of the diagonal: below it lies noise."""
@@ -51,7 +51,7 @@ def measure_creases(
     Source: curvature as the change of normals across an edge; smoothing by one implicit step of heat flow
     (Desbrun et al. 1999).
     """
-    diameter = _checked_diameter(mesh, shape_diameter)
+    diameter = np.zeros(mesh.n_faces) if shape_diameter is None else checked_diameters(mesh, shape_diameter)
     first, second = adjacency.faces.T
     angles = np.where(is_concave(mesh, adjacency), 1.0, -1.0) * normal_angles(mesh, adjacency)
     diagonal = bounding_box_diagonal(mesh)
@@ -90,15 +90,3 @@ def _smoothed(
     system = sparse.csc_array((entries, (rows, columns)), shape=(m, m))
     solver = splu(system, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     return np.asarray(solver.solve(values * area[:, None]))
-
-
-def _checked_diameter(mesh: TriMesh, shape_diameter: np.ndarray | None) -> Float[np.ndarray, " m"]:
-    if shape_diameter is None:
-        return np.zeros(mesh.n_faces)
-    diameter = np.asarray(shape_diameter, dtype=np.float64)
-    if diameter.shape != (mesh.n_faces,) or not np.isfinite(diameter).all():
-        raise ParameterError(
-            f"shape_diameter must be {mesh.n_faces} finite values but has shape {diameter.shape}, or some are not "
-            "finite; is it another mesh's?"
-        )
-    return diameter

@@ -3,11 +3,11 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-from partwise.errors import ParameterError
 from partwise.geometry.adjacency import edge_adjacency
 from partwise.geometry.faces import bounding_box_diagonal, face_areas, face_centroids
 from partwise.mesh import TriMesh
 from partwise.segmentation.crease_walk import walk_means
+from partwise.segmentation.given_diameters import checked_diameters
 from partwise.segmentation.patch_parameters import RandomWalkParameters
 from partwise.segmentation.patch_tree import PatchTree, patch_tree
 
@@ -43,7 +43,7 @@ class RandomWalkPatches:
         shape_diameters: Float[np.ndarray, " m"] | None = None,
         parameters: RandomWalkParameters = _DEFAULTS,
     ) -> None:
-        diameters = _computed(mesh) if shape_diameters is None else _checked(mesh, shape_diameters)
+        diameters = _computed(mesh) if shape_diameters is None else checked_diameters(mesh, shape_diameters)
         adjacency = edge_adjacency(mesh)
         centroids = face_centroids(mesh)
         position = (centroids - centroids.mean(axis=0)) / (bounding_box_diagonal(mesh) or 1.0)
@@ -77,12 +77,3 @@ def _computed(mesh: TriMesh) -> np.ndarray:
     from partwise.features.shape_diameter import shape_diameter
 
     return shape_diameter(mesh).astype(np.float64)
-
-
-def _checked(mesh: TriMesh, diameters: np.ndarray) -> np.ndarray:
-    if diameters.shape != (mesh.n_faces,) or not np.isfinite(diameters).all():
-        raise ParameterError(
-            f"shape diameters must be ({mesh.n_faces},) finite numbers but are {diameters.shape}; "
-            "are they another mesh's?"
-        )
-    return diameters.astype(np.float64)

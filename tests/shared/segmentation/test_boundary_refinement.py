@@ -183,7 +183,7 @@ def test_refuses_labels_below_unlabelled():
 
 @pytest.mark.parametrize("wrong", [np.zeros(7), np.full(1152, np.nan)])
 def test_refuses_shape_diameters_that_do_not_fit(wrong):
-    with pytest.raises(ParameterError, match="shape_diameter"):
+    with pytest.raises(ParameterError, match="shape diameters must be"):
         refine_boundaries(folded_sheet(), from_column(12), shape_diameter=wrong)
 
 
