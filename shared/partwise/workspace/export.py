@@ -93,16 +93,11 @@ def export_labels(
         if coco_shapes:
             write_coco(staging / COCO_FILE, CocoDataset(parts, tuple(coco_shapes)))
             taken.add(COCO_FILE)
+        common = tuple(ManifestFile(COCO_FILE, file_sha256(staging / COCO_FILE)) for _ in coco_shapes[:1])
         manifest = ExportManifest(
-            __version__,
-            collection.name,
-            schema.version,
-            parts.parts,
-            segmentation.value,
-            tuple(entries),
-            tuple(ManifestFile(COCO_FILE, file_sha256(staging / COCO_FILE)) for _ in coco_shapes[:1]),
+            __version__, collection.name, schema.version, parts.parts, segmentation.value, tuple(entries), common,
             {"format": file_format.value, "on": role.value, **_sampling(file_format, sampling)},
-        )
+        )  # fmt: skip
         write_manifest(staging / MANIFEST, manifest)
         _move([*sorted(taken), MANIFEST], staging, out)
     return ExportReport(len(entries), n_shapes - len(entries), out / MANIFEST)
