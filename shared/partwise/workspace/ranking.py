@@ -18,6 +18,7 @@ BATCH = 64
 """Shapes that people label between two rankings, about."""
 
 _ID_PAGE = 5_000
+_RANKS_AT_ONCE = 200  # places that a claim cannot have for the moment that it takes to write them
 
 _POOL = 4
 """As many candidates for each shape of a batch: the least certain, of which different ones are taken first."""
@@ -40,7 +41,7 @@ def rank_queue(workspace: Workspace, collection: Collection, score_name: str, *,
     places = enumerate(ranked, start=1)
     return sum(
         catalog.set_ranks(collection.id, {shape_id: rank for rank, shape_id in piece})
-        for piece in _pieces(places, PAGE)
+        for piece in _pieces(places, _RANKS_AT_ONCE)
     )
 
 

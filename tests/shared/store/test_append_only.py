@@ -5,7 +5,7 @@ from sqlalchemy import text
 from sqlalchemy.exc import DBAPIError
 
 from partwise.store.sql_catalog import SqlCatalog
-from partwise.testing.catalog.samples import add_collection, label, publish_mesh
+from partwise.testing.catalog.samples import claim, confirm, label, ready_shapes
 
 _CHANGES = [
     "UPDATE label_revision SET author_id = author_id",
@@ -13,13 +13,20 @@ _CHANGES = [
     "DELETE FROM label_revision",
     "UPDATE audit SET actor = 'bob'",
     "DELETE FROM audit",
+    "UPDATE stroke SET sequence = 7",
+    "DELETE FROM stroke",
+    "UPDATE answer SET slot = 1",
+    "DELETE FROM answer",
 ]
 _REPLACE = "REPLACE INTO label_revision SELECT * FROM label_revision"
 
 
 def _labelled(catalog: SqlCatalog) -> int:
-    _, (shape_id,) = add_collection(catalog, 1)
-    publish_mesh(catalog, shape_id)
+    """Labels, the strokes they came from, and an answer that waits for another person's."""
+    collection, (shape_id,) = ready_shapes(catalog, 1)
+    catalog.update_collection_settings(collection.id, {"labels_per_shape": 2})
+    catalog.fill_queue(collection.id)
+    confirm(catalog, claim(catalog, collection, catalog.add_person("ann")))
     return label(catalog, shape_id).id
 
 
@@ -36,6 +43,9 @@ def test_sqlite_refuses(catalog: SqlCatalog, statement: str) -> None:
     _refuses(catalog, statement)
 
 
-@pytest.mark.parametrize("statement", [*_CHANGES, "TRUNCATE label_revision CASCADE", "TRUNCATE audit"])
+@pytest.mark.parametrize(
+    "statement",
+    [*_CHANGES, "TRUNCATE label_revision CASCADE", "TRUNCATE audit", "TRUNCATE stroke", "TRUNCATE answer CASCADE"],
+)
 def test_postgres_refuses(postgres_catalog: SqlCatalog, statement: str) -> None:
     _refuses(postgres_catalog, statement)

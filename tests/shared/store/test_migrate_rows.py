@@ -12,6 +12,7 @@ from partwise.errors import ConflictError
 from partwise.labels.encoding import encode_labels
 from partwise.store.engine import connect_engine, parsed_url, writing
 from partwise.store.migrate import migrate
+from partwise.store.records import NewClaim, ShapeFilter
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.testing.expect import raises
 
@@ -36,6 +37,10 @@ def _fill(engine: Engine) -> None:
         "INSERT INTO block VALUES (2, 'blocks/mesh/2', 'mesh', 1, 1, 'c', :now)",
         "INSERT INTO mesh VALUES ('older', 4, 4, 'kept/meshes/older', :now), ('newer', 4, 4, NULL, :now)",
         "INSERT INTO shape_mesh VALUES (1, 'older', 1, 0), (1, 'newer', 2, 0)",
+        "INSERT INTO stage_run (id, shape_id, stage, key, status, attempts, seconds, summary, finished_at, "
+        "is_superseded) "
+        "VALUES (1, 1, 'describe', 'k', 'done', 1, 0, '{}', :now, false), "
+        "(2, 2, 'describe', 'k', 'done', 1, 0, '{}', :now, false)",
         "INSERT INTO label_revision (id, shape_id, mesh_hash, kind, parent_id, author_id, schema_version, labels, "
         "n_faces, sha256, created_at) VALUES (1, 1, 'older', 'human', NULL, 1, 1, :labels, 4, :sha256, :now)",
     )
@@ -94,3 +99,17 @@ def test_names_of_parts_still_occur_once(migrated: SqlCatalog) -> None:
 def test_revisions_are_still_append_only(migrated: SqlCatalog) -> None:
     with pytest.raises(Exception, match="append-only"), writing(migrated._engine) as connection:
         connection.execute(text("DELETE FROM label_revision"))
+
+
+def test_ready_shapes_without_labels_wait_in_the_queue(migrated: SqlCatalog) -> None:
+    assert migrated.waiting_shapes(1) == [2]
+    claimed = migrated.claim_next(NewClaim(1, 1, 60, 0.5))
+    assert claimed is not None
+    assert claimed.shape_id == 2
+
+
+def test_the_table_of_shapes_is_filled(migrated: SqlCatalog) -> None:
+    rows = {row.shape.id: row for row in migrated.list_shapes(1)}
+    assert {shape_id: row.state for shape_id, row in rows.items()} == migrated.shape_states([1, 2])
+    assert (rows[1].author_id, rows[2].author_id) == (1, None)
+    assert [row.shape.id for row in migrated.list_shapes(1, where=ShapeFilter(part_id=2))] == [1]

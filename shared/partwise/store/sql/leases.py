@@ -32,7 +32,7 @@ def lease(connection: Connection, lease_id: int) -> Lease:
 
 def leases_of(connection: Connection, person_id: int) -> list[Lease]:
     query = select(t.lease).where(t.lease.c.person_id == person_id, t.lease.c.released_at.is_(None))
-    return [to_lease(row) for row in connection.execute(query.order_by(t.lease.c.id))]
+    return sorted((to_lease(row) for row in connection.execute(query)), key=lambda each: each.id)
 
 
 def active_leases(connection: Connection, collection_id: int, after: int, limit: int) -> list[Lease]:

@@ -142,11 +142,12 @@ def clusters(connection: Connection, shape_ids: SizedIterable[int]) -> dict[int,
     facet, found = t.shape_facet.c, {}
     for some in batches(shape_ids):
         query = select(facet.shape_id, facet.cluster).where(facet.shape_id.in_(some), facet.cluster.is_not(None))
-        found.update(dict(connection.execute(query)))
+        found.update({row.shape_id: row.cluster for row in connection.execute(query)})
     return found
 
 
 def cluster_sizes(connection: Connection, collection_id: int) -> dict[int, int]:
     facet = t.shape_facet.c
     query = select(facet.cluster, func.count()).where(facet.collection_id == collection_id, facet.cluster.is_not(None))
-    return dict(connection.execute(query.group_by(facet.cluster).order_by(facet.cluster)))
+    rows = connection.execute(query.group_by(facet.cluster).order_by(facet.cluster)).all()
+    return {int(row[0]): int(row[1]) for row in rows}

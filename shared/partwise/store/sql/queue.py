@@ -52,8 +52,9 @@ def claim_next(connection: Connection, claim: NewClaim, now: datetime) -> Lease 
 
 def _claim_by_rank(connection: Connection, claim: NewClaim, now: datetime) -> Lease | None:
     for _ in range(_TRIES):
-        place = _first_place(connection, claim, t.queue_rank.c.person_id == claim.person_id)
-        place = place or _first_place(connection, claim, t.queue_rank.c.person_id.is_(None))
+        place = _first_free_place(connection, claim, is_waiting=False)
+        # passed over may be what a ranking holds for a moment: nothing is left only if waiting for it finds nothing
+        place = place or _first_free_place(connection, claim, is_waiting=True)
         if place is None:
             return None
         taken = _take(connection, place, claim.person_id, claim.lease_s, now, is_prefetched=claim.is_prefetch)
@@ -62,8 +63,19 @@ def _claim_by_rank(connection: Connection, claim: NewClaim, now: datetime) -> Le
     return None
 
 
-def _first_place(connection: Connection, claim: NewClaim, is_for_them: ColumnElement[bool]) -> Row[Any] | None:
-    """The first free place that this person may have, locked; those that others are just taking are passed over."""
+def _first_free_place(connection: Connection, claim: NewClaim, *, is_waiting: bool) -> Row[Any] | None:
+    """Of those kept for this person, else of those for anyone."""
+    person_id = t.queue_rank.c.person_id
+    own, anyones = and_(person_id == claim.person_id, person_id.is_not(None)), person_id.is_(None)
+    return _first_place(connection, claim, own, is_waiting) or _first_place(connection, claim, anyones, is_waiting)
+
+
+def _first_place(
+    connection: Connection, claim: NewClaim, is_for_them: ColumnElement[bool], is_waiting: bool
+) -> Row[Any] | None:
+    """The first free place that this person may have, locked; those that others have locked are passed over or
+    waited for.
+    """
     place, past = t.queue_rank, t.lease
     is_over_for_them = and_(
         past.c.round == place.c.round,
@@ -79,7 +91,7 @@ def _first_place(connection: Connection, claim: NewClaim, is_for_them: ColumnEle
         .where(place.c.collection_id == claim.collection_id, place.c.lease_id.is_(None), is_for_them, ~had)
         .order_by(place.c.rank, place.c.shape_id, place.c.slot)
         .limit(1)
-        .with_for_update(skip_locked=True, of=place)
+        .with_for_update(skip_locked=not is_waiting, of=place)
     )
     return connection.execute(query).first()
 

@@ -11,7 +11,6 @@ from sqlalchemy import (
     String,
     Table,
     Text,
-    UniqueConstraint,
     text,
 )
 
@@ -76,7 +75,10 @@ queue_rank = Table(  # a row for each label that a shape still wants; while some
     Column("person_id", ForeignKey("person.id")),
     Column("lease_id", ForeignKey("lease.id")),
     Column("opened_at", UtcDateTime, nullable=False),
-    UniqueConstraint("lease_id"),
+)
+_IS_HELD = text("lease_id IS NOT NULL")
+Index(  # only of what is held: an index of all would tempt SQLite to look for free places in it
+    "uq_queue_rank_held", queue_rank.c.lease_id, unique=True, sqlite_where=_IS_HELD, postgresql_where=_IS_HELD
 )
 _IS_FREE = text("lease_id IS NULL AND person_id IS NULL")
 _IS_ASSIGNED = text("lease_id IS NULL AND person_id IS NOT NULL")
@@ -95,6 +97,7 @@ Index(
     queue_rank.c.person_id,
     queue_rank.c.rank,
     queue_rank.c.shape_id,
+    queue_rank.c.slot,
     sqlite_where=_IS_ASSIGNED,
     postgresql_where=_IS_ASSIGNED,
 )

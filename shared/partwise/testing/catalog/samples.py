@@ -2,21 +2,35 @@
 
 import uuid
 from collections.abc import Sequence
+from datetime import UTC, datetime
 
 import numpy as np
 
+from partwise.errors import NotFoundError
+from partwise.labels.encoding import labels_sha256
+from partwise.labels.operations import Assign
+from partwise.labels.strokes import Stroke
 from partwise.store.catalog import Catalog
 from partwise.store.records import (
     Collection,
+    Confirmation,
+    Draft,
     LabelRevision,
+    Lease,
     MeshRole,
     Model,
+    NewBlindCheck,
     NewBlock,
+    NewClaim,
+    NewConfirmation,
+    NewConsensus,
+    NewDraft,
     NewMesh,
     NewModel,
     NewRevision,
     NewShape,
     NewStageRun,
+    Person,
     RevisionKind,
 )
 from partwise.store.reviews import NewReview, RevisionOrigin
@@ -83,3 +97,50 @@ def move(
 
 def save_model(catalog: Catalog, collection_id: int) -> Model:
     return catalog.save_model(NewModel(collection_id, {"preset": "paper"}, "models/1.safetensors", ()))
+
+
+def ready_shapes(catalog: Catalog, n_shapes: int, name: str = "chairs") -> tuple[Collection, list[int]]:
+    """A collection whose shapes all have a mesh and wait in the queue."""
+    collection, shape_ids = add_collection(catalog, n_shapes, name)
+    for shape_id in shape_ids:
+        publish_mesh(catalog, shape_id)
+    publish(catalog, shape_ids)
+    return collection, shape_ids
+
+
+def claim(catalog: Catalog, collection: Collection, person: Person, *, is_prefetch: bool = False) -> Lease:
+    """The next shape for a person, where there is one."""
+    lease = catalog.claim_next(NewClaim(collection.id, person.id, 60.0, 0.999, is_prefetch))
+    if lease is None:
+        raise NotFoundError("a shape was to be claimed but none is left")
+    return lease
+
+
+def blank_draft(catalog: Catalog, lease: Lease) -> Draft:
+    """A draft of the leased shape that starts from nothing."""
+    blank = labels_sha256(np.zeros(N_FACES, dtype=np.uint16))
+    return catalog.open_draft(lease.id, lease.person_id, NewDraft(mesh_hash(lease.shape_id), None, blank, 1))
+
+
+def strokes(draft: Draft, first: int, n_strokes: int, base_revision: int | None = None) -> list[Stroke]:
+    """Strokes of a draft's author, numbered on from `first`."""
+    at = datetime(2026, 1, 31, 12, tzinfo=UTC)
+    return [
+        Stroke(uuid.uuid4(), sequence, base_revision, draft.person_id, at, Assign(((sequence % N_FACES, 1),), 1))
+        for sequence in range(first, first + n_strokes)
+    ]
+
+
+def confirm(
+    catalog: Catalog,
+    lease: Lease,
+    labels: Sequence[int] = (1, 1, 1, 2, 2, 2),
+    consensus: NewConsensus | None = None,
+    blind_check: NewBlindCheck | None = None,
+) -> Confirmation:
+    """Confirm labels of a leased shape, with one stroke."""
+    draft = blank_draft(catalog, lease)
+    if not draft.n_strokes:
+        catalog.append_strokes(draft.id, draft.person_id, 0, strokes(draft, 0, 1))
+    new = NewConfirmation(draft.id, draft.person_id, 1, np.array(labels), 1, consensus, blind_check)
+    return catalog.confirm_draft(new)

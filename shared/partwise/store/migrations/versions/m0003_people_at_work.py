@@ -78,12 +78,12 @@ def _leases() -> None:
         sa.ForeignKeyConstraint(["person_id"], ["person.id"], name="fk_queue_rank_person_id"),
         sa.ForeignKeyConstraint(["shape_id"], ["shape.id"], name="fk_queue_rank_shape_id"),
         sa.PrimaryKeyConstraint("shape_id", "slot", name="pk_queue_rank"),
-        sa.UniqueConstraint("lease_id", name="uq_queue_rank_lease_id"),
     )
+    op.create_index("uq_queue_rank_held", "queue_rank", ["lease_id"], unique=True, **_where("lease_id IS NOT NULL"))
     op.create_index(
         "ix_queue_rank_assigned",
         "queue_rank",
-        ["collection_id", "person_id", "rank", "shape_id"],
+        ["collection_id", "person_id", "rank", "shape_id", "slot"],
         **_where("lease_id IS NULL AND person_id IS NOT NULL"),
     )
     op.create_index("ix_queue_rank_collection_id_shape_id", "queue_rank", ["collection_id", "shape_id"])

@@ -1,0 +1,191 @@
+"""Conformance: jobs and events."""
+# ruff: noqa: S101 # a test suite asserts
+
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from partwise.errors import ConflictError, NotFoundError, ParameterError
+from partwise.store.catalog import Catalog
+from partwise.store.records import COALESCED_KINDS, EventKind, Job, JobKind, JobState, NewEvent, Progress
+from partwise.testing.catalog.samples import add_collection
+from partwise.testing.expect import raises
+
+
+def _running(catalog: Catalog, kind: JobKind = JobKind.TRAIN, owner: str = "w1") -> Job:
+    """A job of a new collection that its owner has begun."""
+    collection, _ = add_collection(catalog, 0)
+    catalog.enqueue_job(collection.id, kind)
+    job = catalog.claim_job(owner)
+    assert job is not None
+    return job
+
+
+def _later() -> datetime:
+    return datetime.now(UTC) + timedelta(hours=1)
+
+
+class JobConformance:
+    def test_a_job_comes_back_as_enqueued(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        job = catalog.enqueue_job(collection.id, JobKind.EXPORT, {"format": "seg"})
+        assert (job.kind, job.parameters, job.state) == (JobKind.EXPORT, {"format": "seg"}, JobState.PENDING)
+        assert (job.progress, job.result, job.is_over) == (Progress(), None, False)
+        assert catalog.job(job.id) == job
+        assert catalog.jobs(collection.id) == [job]
+
+    @pytest.mark.parametrize("kind", JobKind)
+    def test_one_waiting_job_is_enough_where_it_covers_all(self, catalog: Catalog, kind: JobKind) -> None:
+        collection, _ = add_collection(catalog, 0)
+        first = catalog.enqueue_job(collection.id, kind, {"a": 1})
+        second = catalog.enqueue_job(collection.id, kind, {"a": 2})
+        assert (second.id == first.id) == (kind in COALESCED_KINDS)
+        assert second.parameters == {"a": 2}
+        assert catalog.enqueue_job(collection.id, kind).parameters == ({"a": 2} if kind in COALESCED_KINDS else {})
+
+    def test_the_oldest_is_begun_first_by_one_owner(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        jobs = [catalog.enqueue_job(collection.id, JobKind.EXPORT) for _ in range(2)]
+        claimed = [catalog.claim_job("w1"), catalog.claim_job("w2"), catalog.claim_job("w3")]
+        assert [job and job.id for job in claimed] == [jobs[0].id, jobs[1].id, None]
+        assert [job and (job.owner, job.attempts) for job in claimed] == [("w1", 1), ("w2", 1), None]
+
+    def test_an_owner_takes_the_kinds_it_can_do(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        catalog.enqueue_job(collection.id, JobKind.TRAIN)
+        assert catalog.claim_job("w1", [JobKind.EXPORT, JobKind.INGEST]) is None
+        assert catalog.claim_job("w1", [JobKind.TRAIN]) is not None
+
+    def test_one_training_runs_at_a_time_and_one_waits(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        waiting = catalog.enqueue_job(job.collection_id, JobKind.TRAIN)
+        assert waiting.id != job.id
+        assert catalog.claim_job("w2") is None
+        catalog.finish_job(job.id, "w1", JobState.DONE)
+        claimed = catalog.claim_job("w2")
+        assert claimed is not None
+        assert claimed.id == waiting.id
+
+    def test_collections_train_beside_each_other(self, catalog: Catalog) -> None:
+        _running(catalog)
+        other, _ = add_collection(catalog, 0, "mugs")
+        catalog.enqueue_job(other.id, JobKind.TRAIN)
+        assert catalog.claim_job("w2") is not None
+
+    def test_heartbeats_tell_how_far_it_is(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        progress = Progress(3, 1, 10, "epoch 3")
+        assert catalog.heartbeat_job(job.id, "w1", progress).progress == progress
+        assert catalog.heartbeat_job(job.id, "w1").progress == progress
+        assert catalog.events(after=0)[-1].payload["message"] == "epoch 3"
+
+    def test_only_its_owner_works_on_it(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        with raises(ConflictError, "its owner"):
+            catalog.heartbeat_job(job.id, "w2")
+        with raises(ConflictError, "its owner"):
+            catalog.finish_job(job.id, "w2", JobState.DONE)
+        catalog.finish_job(job.id, "w1", JobState.DONE)
+        with raises(ConflictError, "done"):
+            catalog.heartbeat_job(job.id, "w1")
+
+    def test_a_finished_job_has_a_result(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        done = catalog.finish_job(job.id, "w1", JobState.DONE, message="trained", result={"version": 3})
+        assert (done.state, done.result, done.progress.message) == (JobState.DONE, {"version": 3}, "trained")
+        assert done.finished_at is not None
+        assert done.is_over
+        with raises(ParameterError, "running"):
+            catalog.finish_job(job.id, "w1", JobState.RUNNING)
+
+    def test_a_pending_job_is_cancelled_at_once_and_a_running_one_is_asked_to_stop(self, catalog: Catalog) -> None:
+        running = _running(catalog)
+        waiting = catalog.enqueue_job(running.collection_id, JobKind.TRAIN)
+        assert catalog.cancel_job(waiting.id).state is JobState.CANCELLED
+        assert catalog.cancel_job(running.id).state is JobState.RUNNING
+        assert catalog.heartbeat_job(running.id, "w1").cancel_requested
+        catalog.finish_job(running.id, "w1", JobState.CANCELLED)
+        with raises(ConflictError, "cancelled"):
+            catalog.cancel_job(running.id)
+
+    def test_failed_work_is_tried_again_as_a_new_job(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        with raises(ConflictError, "running"):
+            catalog.retry_job(job.id)
+        catalog.finish_job(job.id, "w1", JobState.FAILED, message="no disk")
+        again = catalog.retry_job(job.id)
+        assert (again.kind, again.state, again.attempts) == (job.kind, JobState.PENDING, 0)
+        assert again.id != job.id
+
+    def test_lost_jobs_are_begun_again_and_fail_in_the_end(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        assert catalog.requeue_lost_jobs(datetime(2020, 1, 1, tzinfo=UTC)) == []
+        for attempt in (1, 2):
+            (lost,) = catalog.requeue_lost_jobs(_later())
+            assert (lost.id, lost.state, lost.attempts) == (job.id, JobState.PENDING, attempt)
+            assert catalog.claim_job("w2") is not None
+        (failed,) = catalog.requeue_lost_jobs(_later())
+        assert (failed.state, failed.is_over) == (JobState.FAILED, True)
+        assert "lost 3 times" in failed.progress.message
+
+    def test_a_lost_job_gives_way_to_the_one_that_waits(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        waiting = catalog.enqueue_job(job.collection_id, JobKind.TRAIN)
+        (lost,) = catalog.requeue_lost_jobs(_later())
+        assert (lost.id, lost.state) == (job.id, JobState.CANCELLED)
+        claimed = catalog.claim_job("w2")
+        assert claimed is not None
+        assert claimed.id == waiting.id
+
+    def test_a_lost_job_that_was_to_stop_has_stopped(self, catalog: Catalog) -> None:
+        job = _running(catalog, JobKind.EXPORT)
+        catalog.cancel_job(job.id)
+        assert [lost.state for lost in catalog.requeue_lost_jobs(_later())] == [JobState.CANCELLED]
+
+    def test_pages_of_jobs_are_newest_first(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        jobs = [catalog.enqueue_job(collection.id, JobKind.EXPORT) for _ in range(3)]
+        assert catalog.jobs(collection.id, limit=2) == [jobs[2], jobs[1]]
+        assert catalog.jobs(collection.id, before=jobs[1].id) == [jobs[0]]
+        assert catalog.jobs(collection.id, state=JobState.DONE) == []
+
+    def test_unknown_jobs_and_collections_are_refused(self, catalog: Catalog) -> None:
+        uses: list[Callable[[], object]] = [
+            lambda: catalog.job(99),
+            lambda: catalog.cancel_job(99),
+            lambda: catalog.retry_job(99),
+            lambda: catalog.heartbeat_job(99, "w1"),
+            lambda: catalog.enqueue_job(99, JobKind.TRAIN),
+        ]
+        for use in uses:
+            with raises(NotFoundError, "99"):
+                use()
+
+
+class EventConformance:
+    def test_events_are_read_on_from_the_last(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        new = NewEvent(EventKind.STAGE, collection.id, {"stage": "describe", "n_done": 3})
+        first, second = catalog.add_event(new), catalog.add_event(new)
+        assert (first.kind, first.payload, first.collection_id) == (new.kind, new.payload, new.collection_id)
+        assert catalog.events(after=0) == [first, second]
+        assert catalog.events(after=first.id) == [second]
+        assert catalog.events(after=0, limit=1) == [first]
+        assert catalog.events(after=second.id) == []
+
+    def test_events_of_other_collections_are_left_out(self, catalog: Catalog) -> None:
+        (mine, _), (other, _) = add_collection(catalog, 0), add_collection(catalog, 0, "mugs")
+        kept = [catalog.add_event(NewEvent(EventKind.JOB, each)) for each in (mine.id, None)]
+        catalog.add_event(NewEvent(EventKind.JOB, other.id))
+        assert catalog.events(after=0, collection_ids=[mine.id]) == kept
+
+    def test_pruned_events_are_noticed_by_their_bounds(self, catalog: Catalog) -> None:
+        bounds = catalog.event_bounds()
+        assert (bounds.oldest, bounds.newest) == (0, 0)
+        events = [catalog.add_event(NewEvent(EventKind.PEOPLE, None)) for _ in range(3)]
+        assert catalog.prune_events(datetime(2020, 1, 1, tzinfo=UTC)) == 0
+        assert catalog.prune_events(_later(), limit=2) == 2
+        assert (catalog.event_bounds().oldest, catalog.event_bounds().newest) == (events[2].id, events[2].id)
+        assert catalog.prune_events(_later()) == 1
+        assert catalog.add_event(NewEvent(EventKind.PEOPLE, None)).id > events[2].id

@@ -1,0 +1,173 @@
+"""Conformance: the table of shapes."""
+# ruff: noqa: S101 # a test suite asserts
+
+from collections.abc import Sequence
+
+import pytest
+
+from partwise.errors import NotFoundError
+from partwise.store.catalog import Catalog
+from partwise.store.records import (
+    Collection,
+    ListAnchor,
+    NewFailure,
+    NewScore,
+    RevisionKind,
+    ShapeFilter,
+    ShapeOrder,
+    ShapeState,
+)
+from partwise.store.reviews import NewReview, ReviewReason
+from partwise.testing.catalog.samples import add_collection, label, publish, publish_mesh, save_model
+from partwise.testing.expect import raises
+
+VALUES = (0.5, 0.9, 0.5, 0.1)
+
+
+def _scored(catalog: Catalog, values: Sequence[float] = VALUES) -> tuple[Collection, list[int]]:
+    """A collection whose shapes have these entropies, and one shape without."""
+    collection, shape_ids = add_collection(catalog, len(values) + 1)
+    model = save_model(catalog, collection.id)
+    scores = [NewScore(shape_ids[i], model.id, "entropy", value) for i, value in enumerate(values)]
+    catalog.record_done([], scores)
+    return collection, shape_ids
+
+
+def _ids(catalog: Catalog, collection: Collection, where: ShapeFilter, order: ShapeOrder | None = None) -> list[int]:
+    """All ids, read two at a time."""
+    found: list[int] = []
+    after: ListAnchor | None = None
+    while page := catalog.list_shapes(collection.id, where=where, order=order, after=after, limit=2):
+        found += [row.shape.id for row in page]
+        after = page[-1].anchor
+    return found
+
+
+class ListingConformance:
+    @pytest.mark.parametrize("descending", [False, True])
+    def test_pages_in_order_of_ids(self, catalog: Catalog, descending: bool) -> None:
+        collection, shape_ids = add_collection(catalog, 5)
+        found = _ids(catalog, collection, ShapeFilter(), ShapeOrder(None, descending))
+        assert found == sorted(shape_ids, reverse=descending)
+
+    def test_pages_in_order_of_a_score(self, catalog: Catalog) -> None:
+        collection, (a, b, c, d, _) = _scored(catalog)
+        assert _ids(catalog, collection, ShapeFilter(), ShapeOrder("entropy")) == [d, a, c, b]
+        assert _ids(catalog, collection, ShapeFilter(), ShapeOrder("entropy", descending=True)) == [b, c, a, d]
+        assert _ids(catalog, collection, ShapeFilter(), ShapeOrder("bald")) == []
+
+    def test_a_row_says_what_the_table_shows(self, catalog: Catalog) -> None:
+        collection, shape_ids = _scored(catalog)
+        (row,) = catalog.list_shapes(collection.id, order=ShapeOrder("entropy", descending=True), limit=1)
+        assert (row.shape, row.state) == (catalog.shape(shape_ids[1]), ShapeState.NEW)
+        assert (row.value, row.model_version) == (0.9, 1)
+        assert (row.author_id, row.cluster, row.failed_stage) == (None, None, None)
+
+    def test_filters_meet_all_that_is_asked(self, catalog: Catalog) -> None:
+        collection, (a, b, c, d, e) = _scored(catalog)
+        for shape_id in (a, b):
+            publish_mesh(catalog, shape_id)
+        publish(catalog, [a, b, c])
+        catalog.record_failure(NewFailure(d, "mesh", "k", "no faces"))
+        author = label(catalog, a, labels=(1, 1, 1, 1, 1, 1)).author_id
+        label(catalog, b, RevisionKind.REFERENCE)
+        catalog.set_clusters(collection.id, {a: 7, b: 7, c: 8})
+        expected = {
+            ShapeFilter(state=ShapeState.CONFIRMED): [a],
+            ShapeFilter(state=ShapeState.READY): [b, c],
+            ShapeFilter(state=ShapeState.NEW): [e],
+            ShapeFilter(failed_stage="mesh"): [d],
+            ShapeFilter(author_id=author): [a],
+            ShapeFilter(part_id=1): [a],
+            ShapeFilter(part_id=2): [],
+            ShapeFilter(cluster=7): [a, b],
+            ShapeFilter(cluster=7, state=ShapeState.READY): [b],
+        }
+        for where, ids in expected.items():
+            assert _ids(catalog, collection, where) == ids
+            assert _ids(catalog, collection, where, ShapeOrder("entropy")) == sorted(
+                set(ids) - {e}, key=lambda i: (VALUES[(a, b, c, d).index(i)], i)
+            )
+
+    def test_states_in_the_table_are_the_derived_ones(self, catalog: Catalog) -> None:
+        collection, (a, b, c, d) = add_collection(catalog, 4)
+        for shape_id in (a, b):
+            publish_mesh(catalog, shape_id)
+        name = publish(catalog, [a, b, c])
+        first = label(catalog, a)
+        label(catalog, b, RevisionKind.IMPORTED)
+        self._agree(catalog, collection)
+        review = catalog.add_review(first.id, NewReview(ReviewReason.MAP_BACK))
+        catalog.record_failure(NewFailure(d, "mesh", "k", "no faces"))
+        self._agree(catalog, collection)
+        catalog.accept_review(review.id, first.author_id)
+        catalog.clear_failures(collection.id)
+        catalog.supersede_block(name)
+        self._agree(catalog, collection)
+
+    @staticmethod
+    def _agree(catalog: Catalog, collection: Collection) -> None:
+        rows = catalog.list_shapes(collection.id)
+        assert {row.shape.id: row.state for row in rows} == catalog.shape_states([row.shape.id for row in rows])
+
+    def test_parts_are_those_of_the_newest_labels(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id)
+        label(catalog, shape_id, labels=(1, 1, 1, 1, 1, 1))
+        label(catalog, shape_id, labels=(2, 2, 2, 2, 2, 2))
+        assert _ids(catalog, collection, ShapeFilter(part_id=1)) == []
+        assert _ids(catalog, collection, ShapeFilter(part_id=2)) == [shape_id]
+
+    def test_rows_of_given_shapes(self, catalog: Catalog) -> None:
+        _, (a, *_, e) = _scored(catalog)
+        found = catalog.listed_shapes([a, e, 99], "entropy")
+        assert {shape_id: row.value for shape_id, row in found.items()} == {a: 0.5, e: None}
+
+    def test_clusters_come_back(self, catalog: Catalog) -> None:
+        collection, (a, b, c) = add_collection(catalog, 3)
+        _, (foreign,) = add_collection(catalog, 1, "mugs")
+        catalog.set_clusters(collection.id, {a: 0, b: 1, foreign: 5})
+        assert catalog.clusters([a, b, c, foreign]) == {a: 0, b: 1}
+        assert catalog.cluster_sizes(collection.id) == {0: 1, 1: 1}
+
+    def test_an_ordering_is_jumped_into(self, catalog: Catalog) -> None:
+        collection, (a, b, c, d, _) = _scored(catalog)
+        assert catalog.ordering(collection.id, "entropy") is None
+        begun = catalog.begin_ordering(collection.id, "entropy")
+        while catalog.extend_ordering(begun.id, limit=3):
+            assert catalog.ordering(collection.id, "entropy") is None
+        ordering = catalog.ordering(collection.id, "entropy")
+        assert ordering is not None
+        assert (ordering.id, ordering.n_shapes) == (begun.id, 4)
+        assert catalog.ordered_shapes(ordering.id, 1, 2) == [a, c]
+        assert catalog.ordered_shapes(ordering.id, 0, 2, descending=True) == [b, c]
+        assert catalog.ordered_shapes(ordering.id, 3, 9, descending=True) == [d]
+        assert catalog.ordered_shapes(ordering.id, 9) == []
+
+    def test_orderings_by_id_need_no_score(self, catalog: Catalog) -> None:
+        collection, shape_ids = add_collection(catalog, 3)
+        begun = catalog.begin_ordering(collection.id)
+        assert [catalog.extend_ordering(begun.id, limit=2) for _ in range(3)] == [2, 1, 0]
+        assert catalog.ordered_shapes(begun.id, 0) == shape_ids
+
+    def test_newer_orderings_replace_older_ones(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 3)
+        ids = []
+        for _ in range(2):
+            begun = catalog.begin_ordering(collection.id)
+            while catalog.extend_ordering(begun.id):
+                pass
+            ids.append(begun.id)
+        assert [catalog.prune_orderings(limit=2) for _ in range(3)] == [2, 1, 0]
+        newest = catalog.ordering(collection.id)
+        assert newest is not None
+        assert newest.id == ids[1]
+        assert len(catalog.ordered_shapes(newest.id, 0)) == 3
+        with raises(NotFoundError, "ordering"):
+            catalog.ordered_shapes(ids[0], 0)
+
+    def test_unknown_collections_are_refused(self, catalog: Catalog) -> None:
+        with raises(NotFoundError, "99"):
+            catalog.list_shapes(99)
+        with raises(NotFoundError, "99"):
+            catalog.begin_ordering(99)

@@ -1,0 +1,321 @@
+"""Conformance: the queue and its leases."""
+# ruff: noqa: S101 # a test suite asserts
+
+from collections.abc import Callable
+
+import pytest
+
+from partwise.errors import ConflictError, NotFoundError, ParameterError
+from partwise.store.catalog import Catalog
+from partwise.store.records import (
+    MAX_HELD,
+    FirstShape,
+    LeaseOutcome,
+    LeasePurpose,
+    NewClaim,
+    NewFailure,
+    NewShape,
+    RevisionKind,
+)
+from partwise.testing.catalog.samples import (
+    add_collection,
+    claim,
+    confirm,
+    label,
+    publish,
+    publish_mesh,
+    ready_shapes,
+    save_model,
+)
+from partwise.testing.expect import raises
+
+
+class QueueConformance:
+    def test_shapes_come_in_order_before_any_model(self, catalog: Catalog) -> None:
+        collection, shape_ids = ready_shapes(catalog, 3)
+        ann = catalog.add_person("ann")
+        assert [claim(catalog, collection, ann).shape_id for _ in shape_ids] == shape_ids
+
+    def test_first_shapes_come_first(self, catalog: Catalog) -> None:
+        collection, shape_ids = ready_shapes(catalog, 4)
+        catalog.replace_first_shapes(collection.id, [FirstShape(shape_ids[2], 0, 0), FirstShape(shape_ids[1], 1, 1)])
+        ann = catalog.add_person("ann")
+        found = [claim(catalog, collection, ann).shape_id for _ in shape_ids]
+        assert found == [shape_ids[2], shape_ids[1], shape_ids[0], shape_ids[3]]
+
+    def test_first_shapes_leave_the_ranks_of_a_model(self, catalog: Catalog) -> None:
+        collection, shape_ids = ready_shapes(catalog, 2)
+        save_model(catalog, collection.id)
+        catalog.replace_first_shapes(collection.id, [FirstShape(shape_ids[1], 0, 0)])
+        assert claim(catalog, collection, catalog.add_person("ann")).shape_id == shape_ids[0]
+
+    def test_only_ready_shapes_without_labels_wait(self, catalog: Catalog) -> None:
+        collection, (new, failed, ready, labelled) = add_collection(catalog, 4)
+        for shape_id in (ready, labelled):
+            publish_mesh(catalog, shape_id)
+        publish(catalog, [ready, labelled])
+        catalog.record_failure(NewFailure(failed, "mesh", "k", "no faces"))
+        label(catalog, labelled)
+        assert catalog.waiting_shapes(collection.id) == [ready]
+        assert new not in catalog.waiting_shapes(collection.id)
+
+    def test_a_shape_labelled_before_it_is_ready_does_not_wait(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id)
+        label(catalog, shape_id, RevisionKind.IMPORTED)
+        publish(catalog, [shape_id])
+        assert catalog.waiting_shapes(collection.id) == []
+
+    def test_a_shape_that_lost_its_description_does_not_wait(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = add_collection(catalog, 1)
+        name = publish(catalog, [shape_id])
+        assert catalog.waiting_shapes(collection.id) == [shape_id]
+        catalog.supersede_block(name)
+        assert catalog.waiting_shapes(collection.id) == []
+
+    def test_nobody_gets_what_another_holds(self, catalog: Catalog) -> None:
+        collection, shape_ids = ready_shapes(catalog, 2)
+        ann, bob, cat = (catalog.add_person(name) for name in ("ann", "bob", "cat"))
+        assert {claim(catalog, collection, each).shape_id for each in (ann, bob)} == set(shape_ids)
+        assert catalog.claim_next(NewClaim(collection.id, cat.id, 60, 0.5)) is None
+        with raises(ConflictError, "someone else"):
+            catalog.claim_shape(shape_ids[0], cat.id, 60)
+
+    def test_what_a_person_holds_is_the_same_after_a_reload(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 3)
+        ann = catalog.add_person("ann")
+        held = [claim(catalog, collection, ann) for _ in range(2)]
+        assert catalog.leases_of(ann.id) == held
+        assert [catalog.lease(each.id) for each in held] == held
+        assert catalog.active_leases(collection.id) == held
+        assert catalog.held_shapes([held[0].shape_id]) == {held[0].shape_id: [held[0]]}
+
+    def test_a_person_holds_four_and_one_prefetched(self, catalog: Catalog) -> None:
+        collection, shape_ids = ready_shapes(catalog, MAX_HELD + 2)
+        ann = catalog.add_person("ann")
+        for _ in range(MAX_HELD):
+            claim(catalog, collection, ann)
+        ahead = claim(catalog, collection, ann, is_prefetch=True)
+        assert ahead.is_prefetched
+        with raises(ConflictError, "at most 4"):
+            claim(catalog, collection, ann)
+        with raises(ConflictError, "at most 4"):
+            catalog.claim_shape(shape_ids[-1], ann.id, 60)
+        with raises(ConflictError, "at most 4"):
+            catalog.renew_lease(ahead.id, ann.id, 60, is_prefetched=False)
+
+    def test_one_shape_is_prefetched_at_a_time_and_taken_next(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 3)
+        ann = catalog.add_person("ann")
+        ahead = claim(catalog, collection, ann, is_prefetch=True)
+        assert claim(catalog, collection, ann, is_prefetch=True).id == ahead.id
+        taken = claim(catalog, collection, ann)
+        assert (taken.id, taken.is_prefetched) == (ahead.id, False)
+
+    def test_released_shapes_go_back_to_their_rank(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 2)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        lease = claim(catalog, collection, ann)
+        ended = catalog.release_lease(lease.id, ann.id)
+        assert ended.outcome is LeaseOutcome.RELEASED
+        assert catalog.release_lease(lease.id, ann.id) == ended
+        assert claim(catalog, collection, bob).shape_id == lease.shape_id
+
+    def test_skipped_shapes_go_to_others(self, catalog: Catalog) -> None:
+        collection, (first, second) = ready_shapes(catalog, 2)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        skipped = catalog.skip_lease(claim(catalog, collection, ann).id, ann.id, " two chairs in one ")
+        assert (skipped.outcome, skipped.reason) == (LeaseOutcome.SKIPPED, "two chairs in one")
+        assert claim(catalog, collection, ann).shape_id == second
+        assert claim(catalog, collection, bob).shape_id == first
+
+    def test_a_skipped_shape_can_be_asked_for_by_name(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        catalog.skip_lease(claim(catalog, collection, ann).id, ann.id, "unclear")
+        assert catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.5)) is None
+        assert catalog.claim_shape(shape_id, ann.id, 60).shape_id == shape_id
+
+    def test_a_skip_needs_a_reason(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        lease = claim(catalog, collection, ann)
+        with raises(ParameterError, "reason"):
+            catalog.skip_lease(lease.id, ann.id, "  ")
+
+    def test_leases_are_their_holders_own(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        lease = claim(catalog, collection, ann)
+        uses: list[Callable[[], object]] = [
+            lambda: catalog.renew_lease(lease.id, bob.id, 60),
+            lambda: catalog.release_lease(lease.id, bob.id),
+            lambda: catalog.skip_lease(lease.id, bob.id, "no"),
+        ]
+        for use in uses:
+            with raises(ConflictError, "another person's"):
+                use()
+
+    def test_what_has_ended_is_not_renewed(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        lease = claim(catalog, collection, ann)
+        catalog.release_lease(lease.id, ann.id)
+        with raises(ConflictError, "released"):
+            catalog.renew_lease(lease.id, ann.id, 60)
+        with raises(ConflictError, "released"):
+            catalog.skip_lease(lease.id, ann.id, "no")
+
+    def test_an_operator_clears_a_lease(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        lease = claim(catalog, collection, ann)
+        cleared = catalog.clear_lease(lease.id, bob.id)
+        assert cleared.outcome is LeaseOutcome.CLEARED
+        assert catalog.clear_lease(lease.id, bob.id) == cleared
+        assert (catalog.audit()[-1].actor, catalog.audit()[-1].action) == ("bob", "clear lease")
+        assert claim(catalog, collection, bob).shape_id == lease.shape_id
+
+    def test_labelled_shapes_are_claimed_by_name_only(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        confirm(catalog, claim(catalog, collection, ann))
+        assert catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.5)) is None
+        again = catalog.claim_shape(shape_id, ann.id, 60)
+        assert catalog.claim_shape(shape_id, ann.id, 60).id == again.id
+        assert again.purpose is LeasePurpose.LABEL
+
+    def test_a_shape_without_a_surface_is_not_claimed_by_name(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        with raises(ConflictError, "no surface"):
+            catalog.claim_shape(shape_id, catalog.add_person("ann").id, 60)
+
+    def test_a_reopened_shape_comes_first_for_everyone_again(self, catalog: Catalog) -> None:
+        collection, (first, second) = ready_shapes(catalog, 2)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        held = claim(catalog, collection, ann)
+        with raises(ConflictError, "works on shape"):
+            catalog.reopen_shape(first, bob.id)
+        confirm(catalog, held)
+        catalog.reopen_shape(first, bob.id)
+        again = claim(catalog, collection, ann)
+        assert (again.shape_id, again.round) == (first, 2)
+        assert claim(catalog, collection, bob).shape_id == second
+
+    def test_a_shape_reopened_for_one_goes_to_no_other(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        confirm(catalog, claim(catalog, collection, ann))
+        catalog.reopen_shape(shape_id, bob.id, for_person_id=ann.id)
+        assert catalog.claim_next(NewClaim(collection.id, bob.id, 60, 0.5)) is None
+        assert claim(catalog, collection, ann).shape_id == shape_id
+
+    def test_a_shape_without_a_surface_is_not_reopened(self, catalog: Catalog) -> None:
+        _, (shape_id,) = add_collection(catalog, 1)
+        with raises(ConflictError, "no surface"):
+            catalog.reopen_shape(shape_id, catalog.add_person("ann").id)
+
+    def test_assigned_shapes_are_kept_for_one(self, catalog: Catalog) -> None:
+        collection, (first, second, third) = ready_shapes(catalog, 3)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        assert catalog.assign_shapes([third, first], ann.id, bob.id) == 2
+        assert claim(catalog, collection, bob).shape_id == second
+        assert [claim(catalog, collection, ann).shape_id for _ in range(2)] == [first, third]
+        catalog.release_lease(catalog.leases_of(ann.id)[0].id, ann.id)
+        assert catalog.queue_depth(collection.id).n_assigned == 1
+        assert catalog.assign_shapes([first], None, bob.id) == 1
+        assert claim(catalog, collection, bob).shape_id == first
+
+    def test_ranks_say_who_is_next_and_disturb_nobody(self, catalog: Catalog) -> None:
+        collection, (first, second, third) = ready_shapes(catalog, 3)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        held = claim(catalog, collection, ann)
+        assert catalog.set_ranks(collection.id, {first: 3, second: 2, third: 1}) == 3
+        assert catalog.set_ranks(collection.id, {third: 1}) == 0
+        assert catalog.leases_of(ann.id) == [held]
+        assert [claim(catalog, collection, bob).shape_id for _ in range(2)] == [third, second]
+
+    def test_each_label_of_a_shape_is_another_persons(self, catalog: Catalog) -> None:
+        collection, (shape_id, other) = ready_shapes(catalog, 2)
+        catalog.update_collection_settings(collection.id, {"labels_per_shape": 2})
+        assert catalog.fill_queue(collection.id) == other
+        assert catalog.fill_queue(collection.id, after=other) is None
+        ann, bob, cat = (catalog.add_person(name) for name in ("ann", "bob", "cat"))
+        leases = [claim(catalog, collection, each) for each in (ann, bob)]
+        assert [(each.shape_id, each.slot) for each in leases] == [(shape_id, 0), (shape_id, 1)]
+        assert {each.purpose for each in leases} == {LeasePurpose.INDEPENDENT}
+        assert claim(catalog, collection, ann).shape_id == other
+        confirm(catalog, leases[0])
+        with raises(ConflictError, "different people's"):
+            catalog.claim_shape(shape_id, ann.id, 60)
+        assert claim(catalog, collection, cat).shape_id == other
+
+    def test_fewer_labels_per_shape_take_places_away(self, catalog: Catalog) -> None:
+        collection = catalog.create_collection("mugs", ["body"], {"labels_per_shape": 3})
+        _, (shape_id,) = _ready_in(catalog, collection.id)
+        assert catalog.queue_depth(collection.id).n_free == 3
+        catalog.update_collection_settings(collection.id, {"labels_per_shape": 1})
+        catalog.fill_queue(collection.id)
+        assert catalog.queue_depth(collection.id).n_free == 1
+        lease = claim(catalog, collection, catalog.add_person("ann"))
+        assert (lease.shape_id, lease.purpose) == (shape_id, LeasePurpose.LABEL)
+
+    def test_depth_counts_what_waits_and_what_is_held(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 3)
+        claim(catalog, collection, catalog.add_person("ann"))
+        depth = catalog.queue_depth(collection.id)
+        assert (depth.n_free, depth.n_held, depth.n_assigned) == (2, 1, 0)
+        assert depth.oldest_at is not None
+
+    def test_known_shapes_are_served_blind(self, catalog: Catalog) -> None:
+        collection, (first, known) = ready_shapes(catalog, 2)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 0.5})
+        label(catalog, known, RevisionKind.REFERENCE)
+        ann = catalog.list_people()[0]
+        blind = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.49))
+        assert blind is not None
+        assert (blind.shape_id, blind.purpose) == (known, LeasePurpose.BLIND)
+        plain = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.5))
+        assert plain is not None
+        assert (plain.shape_id, plain.purpose) == (first, LeasePurpose.LABEL)
+
+    def test_nobody_is_checked_twice_with_one_shape(self, catalog: Catalog) -> None:
+        collection, (known, other) = ready_shapes(catalog, 2)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 1.0})
+        label(catalog, known, RevisionKind.REFERENCE)
+        ann = catalog.list_people()[0]
+        confirm(catalog, claim(catalog, collection, ann))
+        assert claim(catalog, collection, ann).shape_id == other
+        assert claim(catalog, collection, catalog.add_person("bob")).purpose is LeasePurpose.BLIND
+
+    def test_unknown_ids_are_refused(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        uses: list[Callable[[], object]] = [
+            lambda: catalog.lease(99),
+            lambda: catalog.claim_next(NewClaim(99, ann.id, 60, 0.5)),
+            lambda: catalog.claim_next(NewClaim(collection.id, 99, 60, 0.5)),
+            lambda: catalog.claim_shape(99, ann.id, 60),
+            lambda: catalog.claim_shape(shape_id, 99, 60),
+            lambda: catalog.queue_depth(99),
+        ]
+        for use in uses:
+            with raises(NotFoundError, "99"):
+                use()
+
+    @pytest.mark.parametrize("lease_s", [0.0, -1.0, 86_401.0])
+    def test_lease_times_have_limits(self, catalog: Catalog, lease_s: float) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        with raises(ParameterError, "lease"):
+            NewClaim(collection.id, ann.id, lease_s, 0.5)
+        with raises(ParameterError, "lease"):
+            catalog.claim_shape(shape_id, ann.id, lease_s)
+
+
+def _ready_in(catalog: Catalog, collection_id: int) -> tuple[int, list[int]]:
+    """A shape of an existing collection that waits."""
+    (ingested,) = catalog.add_shapes(collection_id, [NewShape("a.off", "x", ".off")])
+    publish_mesh(catalog, ingested.shape_id)
+    publish(catalog, [ingested.shape_id])
+    return collection_id, [ingested.shape_id]
