@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from partwise.store.blocks import BlockKind, Domain, Quantity
 from partwise.store.records import FailureKind
 from partwise_workers.actors import _failure, _Packer, _StageWorker
 from partwise_workers.stage import MAX_REASON
-from partwise_workers.tasks import ShapeTask, StageCall, StagedResult, StageFailure
+from partwise_workers.tasks import BlockRow, ShapeTask, StageCall, StagedResult, StageFailure
 
 ANY_CALL = StageCall(ShapeTask(1, "a.off", "sources/a", (("first", "k"),), {}), "first", "k", {})
 
@@ -71,6 +72,45 @@ def test_a_staged_result_is_not_made_again(make_bench) -> None:
     run(start(bench), task_of(bench))
     run(start(bench), task_of(bench))
     assert (bench.n_noted("first"), bench.n_noted("second")) == (1, 1)
+
+
+def replace_first(bench) -> None:
+    """What another run with the same key may do: the first stage's result, with other values."""
+    name = staged_as(bench, 0)
+    staged = dict(bench.workspace.arrays.read_staged(name))
+    staged["values"] = staged["values"] + 1
+    bench.workspace.arrays.stage(name, staged)
+
+
+def test_a_staged_result_is_made_again_where_what_it_was_made_from_was_replaced(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    before = run(start(bench), task_of(bench))[1].summary["sum"]
+    n_values = len(bench.workspace.arrays.read_staged(staged_as(bench, 0))["values"])
+    replace_first(bench)
+    _, again = run(start(bench), task_of(bench))
+    assert (bench.n_noted("first"), bench.n_noted("second")) == (1, 2)
+    assert again.summary["sum"] == before + n_values
+
+
+def test_a_staged_result_is_kept_when_what_it_was_made_from_is_published_meanwhile(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    first, _ = run(start(bench), task_of(bench))
+    packed = _Packer(bench.workspace.array_url).pack(bench.stages[0].block_kind, seconds_of([first]))
+    block = BlockRow(packed.address.name, 0)
+    task = task_of(bench)
+    rest = replace(task, stage_keys=task.stage_keys[1:], finished={"first": block})
+    assert [result.stage for result in run(start(bench), rest)] == ["second"]
+    assert bench.n_noted("second") == 1
+
+
+def test_a_staged_result_that_does_not_say_what_it_was_made_from_is_made_again(make_bench) -> None:
+    bench = make_bench({"a.off": ""})
+    run(start(bench), task_of(bench))
+    staged = dict(bench.workspace.arrays.read_staged(staged_as(bench, 1)))
+    staged["_account"] = np.frombuffer(b'{"summary": {}, "seconds": 1.0}', dtype=np.uint8)
+    bench.workspace.arrays.stage(staged_as(bench, 1), staged)
+    run(start(bench), task_of(bench))
+    assert bench.n_noted("second") == 2
 
 
 def test_a_staged_result_keeps_its_summary(make_bench) -> None:

@@ -1,5 +1,6 @@
 """The two kinds of actor: one runs stages on single shapes and stages the results, one packs them into blocks."""
 
+import hashlib
 import json
 import logging
 import os
@@ -30,7 +31,8 @@ from partwise_workers.watch import Sentinel, Unwatched, Watch
 logger = logging.getLogger(__name__)
 
 ACCOUNT = "_account"
-"""Beside a staged result's arrays: its summary and seconds as JSON, for a run that finds it after a crash."""
+"""Beside a staged result's arrays, as JSON, for a run that finds it after a crash: its summary and seconds, and what it
+was made from, a digest for each array read: remeshing twice need not give the same mesh under the same key."""
 
 
 class _TaskInputs:
@@ -53,20 +55,35 @@ class _TaskInputs:
     def add(self, stage: str, made: Mapping[str, np.ndarray]) -> None:
         self._made[stage] = made
 
+    def are_behind(self, made: Mapping[str, np.ndarray]) -> bool:
+        """Whether a staged result was made from what is read here; otherwise another run has replaced that since."""
+        read: dict[str, str] | None = _account(made).get("read")
+        return read is not None and all(
+            digest == _digest(self.array(*_unlisted(name))) for name, digest in read.items()
+        )
+
 
 class _CallInputs:
     """Implements `ShapeInputs` for one try of one stage: a task's inputs, and the stage's steps.
+
+    read : digest of each array read so far, by stage and quantity.
 
     What is refused is told with the next step, as a process that dies in between has nothing to do there.
     """
 
     def __init__(self, inputs: _TaskInputs, call: StageCall, on_step: Callable[[Progress], None]) -> None:
         self.source = inputs.source
-        self.array = inputs.array
+        self.read: dict[str, str] = {}
+        self._inputs = inputs
         self._failed_steps = call.failed_steps
         self._refused_steps = dict(call.refused_steps)
         self._on_step = on_step
         self._started = time.monotonic()
+
+    def array(self, stage: str, quantity: str) -> np.ndarray:
+        found = self._inputs.array(stage, quantity)
+        self.read[f"{stage}/{quantity}"] = _digest(found)
+        return found
 
     @property
     def failed_steps(self) -> Mapping[str, str]:
@@ -144,7 +161,7 @@ class _StageWorker:
         return StageReport(result, resident_bytes(os.getpid()))
 
     def _result_of(self, call: StageCall, inputs: _TaskInputs) -> Mapping[str, np.ndarray] | StageFailure:
-        if (staged := self._staged(call.name)) is not None:
+        if (staged := self._staged(call.name, inputs)) is not None:
             return staged
         self._forget_steps(call)  # what an earlier run left would be blamed for what happens now
         started = time.perf_counter()
@@ -171,11 +188,12 @@ class _StageWorker:
         if self._limits is not None:
             self._watch.at(last_words_name(call.name, self._actor_id), self._limits[call.stage].memory_gb)
 
-    def _staged(self, name: StagedName) -> Mapping[str, np.ndarray] | None:
-        """A result that an earlier try or run left; None if there is none, or a damaged one to be made again."""
+    def _staged(self, name: StagedName, inputs: _TaskInputs) -> Mapping[str, np.ndarray] | None:
+        """A result that an earlier try or run left; None if it is to be made: damaged, or from other inputs."""
         try:
-            return self._arrays.read_staged(str(name))
-        except (NotFoundError, StoreError):
+            staged = self._arrays.read_staged(str(name))
+            return staged if inputs.are_behind(staged) else None
+        except (NotFoundError, StoreError, KeyError):  # of other code, it may name what is not there
             return None
 
     def _make(self, call: StageCall, inputs: _TaskInputs, started: float) -> dict[str, np.ndarray]:
@@ -184,7 +202,8 @@ class _StageWorker:
         ragged_quantities(
             self._stages[call.stage].block_kind, [result.arrays]
         )  # refused here, it costs only this shape
-        account = json.dumps({"summary": result.summary, "seconds": time.perf_counter() - started})
+        seconds = time.perf_counter() - started
+        account = json.dumps({"summary": result.summary, "seconds": seconds, "read": own.read})
         return {**result.arrays, ACCOUNT: np.frombuffer(account.encode(), dtype=np.uint8)}
 
     def _require_store(self) -> None:
@@ -203,6 +222,16 @@ def _staged_result(call: StageCall, made: Mapping[str, np.ndarray]) -> StagedRes
 def _account(made: Mapping[str, np.ndarray]) -> dict[str, Any]:
     account: dict[str, Any] = json.loads(made[ACCOUNT].tobytes())
     return account
+
+
+def _digest(array: np.ndarray) -> str:
+    """Of the values alone, the same whether they come from staging or from a block."""
+    return hashlib.blake2b(np.ascontiguousarray(array).tobytes(), digest_size=16).hexdigest()
+
+
+def _unlisted(name: str) -> tuple[str, str]:
+    stage, _, quantity = name.partition("/")
+    return stage, quantity
 
 
 def _failure(call: StageCall, error: BaseException, seconds: float) -> StageFailure:
