@@ -14,12 +14,27 @@ from partwise.workspace.workspace import open_workspace
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
 from partwise_service.problems import install_problems
-from partwise_service.routes import arrays, collections, figures, parts, people, reviews, session, shapes
+from partwise_service.routes import (
+    arrays,
+    collections,
+    drafts,
+    events,
+    figures,
+    leases,
+    parts,
+    people,
+    queue,
+    reviews,
+    session,
+    shapes,
+    tools,
+)
 from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.service import Service
 from partwise_service.settings import ServiceSettings
+from partwise_service.tool_pool import PoolLimits, ToolPool
 
 API_V1 = f"{API}v1"
 ROUTERS: Sequence[APIRouter] = (
@@ -31,6 +46,11 @@ ROUTERS: Sequence[APIRouter] = (
     reviews.router,
     figures.router,
     people.router,
+    queue.router,
+    leases.router,
+    drafts.router,
+    tools.router,
+    events.router,
 )
 """Every resource of the API, in the order of the document. A route file is served once its router is in here."""
 UPLOAD_PATHS: Sequence[str] = (f"{API_V1}/uploads",)
@@ -51,7 +71,9 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
         with ExitStack() as resources:
             workspace = resources.enter_context(open_workspace(settings.workspace))
             limiter = FailureLimiter(settings.max_auth_failures, settings.auth_window_s, clock)
-            app.state.service = Service(settings, workspace, limiter, RecentlyGood(), EmbeddingMaps())
+            pool = ToolPool(workspace.array_url, _pool_limits(settings))
+            resources.callback(pool.close)
+            app.state.service = Service(settings, workspace, limiter, RecentlyGood(), EmbeddingMaps(), pool)
             yield
 
     app = FastAPI(
@@ -71,6 +93,10 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
     install_openapi(app)
     _add_middleware(app, settings)
     return app
+
+
+def _pool_limits(settings: ServiceSettings) -> PoolLimits:
+    return PoolLimits(settings.tool_processes, settings.max_queued_tools, settings.tool_shapes, settings.tool_timeout_s)
 
 
 def _operation_id(route: APIRoute) -> str:

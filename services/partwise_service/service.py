@@ -7,6 +7,7 @@ from partwise_service.maps import EmbeddingMaps
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.settings import ServiceSettings
+from partwise_service.tool_pool import ToolPool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,3 +19,4 @@ class Service:
     limiter: FailureLimiter
     recent: RecentlyGood
     maps: EmbeddingMaps
+    tools: ToolPool

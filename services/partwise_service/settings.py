@@ -27,6 +27,10 @@ class ServiceSettings(BaseModel):
     max_body_bytes, max_upload_bytes : of a request's body, and of one to a path that takes files.
     max_auth_failures : that one address, or one token's beginning, may make in `auth_window_s` seconds.
     threads : handlers that run at once; each may hold a connection to the database.
+    lease_s : seconds for which a claim or a heartbeat holds a shape.
+    tool_processes : in which tools run. max_queued_tools : calls that may wait for one; more are told to come back.
+    tool_shapes : prepared shapes that each of them keeps. tool_timeout_s : after which a call is given up.
+    event_stream_s : seconds after which a stream of events ends, for the client to go on with another.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -44,6 +48,12 @@ class ServiceSettings(BaseModel):
     max_auth_failures: int = Field(20, ge=1)
     auth_window_s: float = Field(60.0, gt=0)
     threads: int = Field(12, ge=1, le=256)
+    lease_s: float = Field(300.0, gt=0, le=86_400)
+    tool_processes: int = Field(2, ge=1, le=64)
+    max_queued_tools: int = Field(16, ge=0, le=10_000)
+    tool_shapes: int = Field(16, ge=1, le=10_000)
+    tool_timeout_s: float = Field(60.0, gt=0)
+    event_stream_s: float = Field(3600.0, ge=0)
 
     @field_validator("cors_origins", "trusted_proxies", mode="before")
     @classmethod

@@ -1,0 +1,45 @@
+"""Leases as callers see them: with the shape, its score and the draft to go on with."""
+
+from collections.abc import Sequence
+
+from partwise.errors import NotFoundError
+from partwise.store.catalog import Catalog
+from partwise.store.records import Lease, Role
+from partwise.workspace.choices import ScoreName
+from partwise_service.schemas.queue import LeaseOut
+from partwise_service.security.identity import Identity
+
+QUEUE_SCORE = ScoreName.ENTROPY
+"""What the queue is ranked by."""
+
+
+def leases_out(catalog: Catalog, leases: Sequence[Lease], caller: Identity) -> list[LeaseOut]:
+    """The leases in their order, with the caller's own open drafts."""
+    rows = catalog.listed_shapes([lease.shape_id for lease in leases], QUEUE_SCORE)
+    drafts = {draft.shape_id: draft.id for draft in catalog.open_drafts(caller.person_id)} if leases else {}
+    return [
+        LeaseOut.of(
+            lease,
+            rows[lease.shape_id],
+            drafts.get(lease.shape_id) if lease.person_id == caller.person_id else None,
+        )
+        for lease in leases
+    ]
+
+
+def visible_lease(catalog: Catalog, caller: Identity, lease_id: int) -> Lease:
+    """The lease of this id if it is the caller's, or the caller is an operator of its collection.
+
+    Raises
+    ------
+    NotFoundError : it is not there, or not for them.
+    """
+    missing = NotFoundError(f"there is no lease {lease_id} of yours; see /leases")
+    try:
+        lease = catalog.lease(lease_id)
+    except NotFoundError as error:
+        raise missing from error
+    is_theirs = lease.person_id == caller.person_id or caller.role.includes(Role.OPERATOR)
+    if not is_theirs or not caller.may_see(lease.collection_id):
+        raise missing
+    return lease

@@ -1,0 +1,191 @@
+"""/drafts: work in progress. A stroke is acknowledged once it is committed, and is on record once."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Query, Request, Response
+
+from partwise.errors import NotFoundError, StaleDraftError
+from partwise.labels.replay import replay
+from partwise.labels.stroke_json import stroke_from_document
+from partwise.store.catalog import Catalog
+from partwise.store.records import Draft, Role
+from partwise.workspace.confirming import begin_draft, confirm, draft_work
+from partwise.workspace.labelling import keep_mesh
+from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
+from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, WorkspaceDep
+from partwise_service.held_leases import visible_lease
+from partwise_service.problems import ProblemError, ProblemKind
+from partwise_service.schemas.base import RowId
+from partwise_service.schemas.drafts import (
+    MAX_SEQUENCE,
+    Acknowledgement,
+    Confirmed,
+    ConfirmLabels,
+    DraftOut,
+    DraftsOut,
+    NewDraftRequest,
+    StrokeOut,
+    Strokes,
+    StrokesOut,
+)
+from partwise_service.security.identity import Identity
+
+MAX_PAGE = 5_000
+_TAIL = 1_000
+"""Strokes of the server's side in a refusal; a client that is further behind pages through the log."""
+router = APIRouter(tags=["drafts"])
+IfMatch = Annotated[
+    str, Header(pattern=r'^(W/)?"[0-9]{1,9}"$', description="The draft's ETag: how many strokes the caller knows of.")
+]
+
+
+@router.post("/leases/{lease_id}/draft")
+def open_draft(
+    caller: Annotator, workspace: WorkspaceDep, response: Response, lease_id: RowId, new: NewDraftRequest
+) -> DraftOut:
+    """The caller's open draft of the leased shape, as it was left, or a new one."""
+    lease = visible_lease(workspace.catalog, caller, lease_id)
+    draft = begin_draft(workspace, lease, new.base_revision)
+    # a remesh cannot be repeated to the bit, so a mesh that strokes are on must outlive it
+    keep_mesh(workspace, workspace.catalog.mesh(draft.shape_id, draft.mesh_hash))
+    return _tagged(response, draft)
+
+
+@router.get("/drafts")
+def list_my_drafts(caller: Annotator, catalog: CatalogDep) -> DraftsOut:
+    """The caller's open drafts, oldest first, whether or not they still hold the shapes."""
+    found = [draft for draft in catalog.open_drafts(caller.person_id) if caller.may_see(draft.collection_id)]
+    return DraftsOut(items=[DraftOut.of(draft) for draft in found])
+
+
+@router.get("/shapes/{shape_id}/draft")
+def show_last_draft(caller: Annotator, shape: ScopedShape, catalog: CatalogDep, response: Response) -> DraftOut:
+    """The caller's last draft of a shape, open or not."""
+    own = [draft for draft in catalog.drafts_of_shape(shape.id) if draft.person_id == caller.person_id]
+    if not own:
+        raise NotFoundError(f"you have no draft of shape {shape.id}; open one with a lease of it")
+    return _tagged(response, own[-1])
+
+
+@router.get("/drafts/{draft_id}")
+def show_draft(caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId) -> DraftOut:
+    """A draft of the caller's own, or of anybody's for operators."""
+    return _tagged(response, visible_draft(catalog, caller, draft_id))
+
+
+@router.get("/drafts/{draft_id}/strokes")
+def list_strokes(
+    caller: Annotator,
+    catalog: CatalogDep,
+    response: Response,
+    draft_id: RowId,
+    after: Annotated[int, Query(ge=-1, le=MAX_SEQUENCE, description="Strokes with a higher sequence.")] = -1,
+    limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 1_000,
+) -> StrokesOut:
+    """A page of the log, by sequence."""
+    draft = visible_draft(catalog, caller, draft_id)
+    found = catalog.strokes(draft.id, after=after, limit=limit)
+    last = found[-1].sequence if found else after
+    return StrokesOut(
+        draft=_tagged(response, draft),
+        items=[StrokeOut.of(stroke) for stroke in found],
+        next=last if found and last + 1 < draft.n_strokes else None,
+    )
+
+
+@router.get("/drafts/{draft_id}/labels", response_class=Response, responses=SAFETENSORS_RESPONSES)
+def get_draft_labels(request: Request, caller: Annotator, workspace: WorkspaceDep, draft_id: RowId) -> Response:
+    """`labels` (m,) uint16 that the strokes leave, and `base` (m,) uint16 that they start from."""
+    draft = visible_draft(workspace.catalog, caller, draft_id)
+    tag = entity_tag("draft", draft.id, draft.n_strokes)
+    held = not_modified(request, tag)
+    if held is not None:
+        return held
+    work = draft_work(workspace, draft)
+    about = {"mesh_hash": draft.mesh_hash, "n_strokes": str(draft.n_strokes)}
+    labels = replay(work.mesh, work.base_labels, work.log)
+    return safetensors_response(request, {"labels": labels, "base": work.base_labels}, tag, metadata=about)
+
+
+@router.post("/drafts/{draft_id}/strokes")
+def append_strokes(
+    caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId, sent: Strokes
+) -> DraftOut:
+    """Commit strokes. Safe to send again: those on record are passed over. The answer comes after the commit.
+
+    409 if the draft went on elsewhere: the problem's `state` is the draft's, `recorded` the log from the expected
+    sequence on, and `refused` what was sent, so that the client has both sides.
+    """
+    draft = visible_draft(catalog, caller, draft_id)
+    strokes = [stroke_from_document(document) for document in sent.strokes]
+    try:
+        return _tagged(response, catalog.append_strokes(draft.id, caller.person_id, sent.expected_sequence, strokes))
+    except StaleDraftError as error:
+        raise _both_sides(catalog, error, sent.expected_sequence, {"refused": sent.strokes}) from error
+
+
+@router.post("/drafts/{draft_id}/confirm")
+def confirm_draft(
+    caller: Annotator, workspace: WorkspaceDep, draft_id: RowId, if_match: IfMatch, confirming: ConfirmLabels
+) -> Confirmed:
+    """Make the strokes labels for good. `If-Match` must be the draft's ETag; 409 with its state if it went on."""
+    draft = visible_draft(workspace.catalog, caller, draft_id)
+    n_strokes = int(if_match.removeprefix("W/").strip('"'))
+    try:
+        done = confirm(workspace, draft.id, caller.person_id, n_strokes, confirming.labels_sha256)
+    except StaleDraftError as error:
+        raise _both_sides(workspace.catalog, error, n_strokes, {}) from error
+    return Confirmed.of(done)
+
+
+@router.post("/drafts/{draft_id}/acknowledge")
+def acknowledge_labels(
+    caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId, seen: Acknowledgement
+) -> DraftOut:
+    """The caller has seen labels that others confirmed meanwhile, and means to confirm over them."""
+    draft = visible_draft(catalog, caller, draft_id)
+    try:
+        return _tagged(response, catalog.acknowledge_head(draft.id, caller.person_id, seen.revision_id))
+    except StaleDraftError as error:
+        raise ProblemError(ProblemKind.CONFLICT, str(error), {"state": dict(error.state)}) from error
+
+
+@router.post("/drafts/{draft_id}/discard")
+def discard_draft(caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId) -> DraftOut:
+    """Close a draft without labels; its strokes stay on record."""
+    draft = visible_draft(catalog, caller, draft_id)
+    return _tagged(response, catalog.discard_draft(draft.id, caller.person_id))
+
+
+def visible_draft(catalog: Catalog, caller: Identity, draft_id: int) -> Draft:
+    """The draft of this id if it is the caller's, or the caller is an operator of its collection.
+
+    Raises
+    ------
+    NotFoundError : it is not there, or not for them.
+    """
+    missing = NotFoundError(f"there is no draft {draft_id} of yours; see /drafts")
+    try:
+        draft = catalog.draft(draft_id)
+    except NotFoundError as error:
+        raise missing from error
+    is_theirs = draft.person_id == caller.person_id or caller.role.includes(Role.OPERATOR)
+    if not is_theirs or not caller.may_see(draft.collection_id):
+        raise missing
+    return draft
+
+
+def _tagged(response: Response, draft: Draft) -> DraftOut:
+    response.headers["ETag"] = f'"{draft.n_strokes}"'
+    return DraftOut.of(draft)
+
+
+def _both_sides(
+    catalog: Catalog, error: StaleDraftError, known_to_caller: int, theirs: Mapping[str, Any]
+) -> ProblemError:
+    """The refusal with what is on record beside what was sent."""
+    tail = catalog.strokes(error.state["draft_id"], after=known_to_caller - 1, limit=_TAIL)
+    recorded = [StrokeOut.of(stroke).model_dump(mode="json") for stroke in tail]
+    extensions = {"state": dict(error.state), "recorded": recorded, **theirs}
+    return ProblemError(ProblemKind.CONFLICT, str(error), extensions)

@@ -1,0 +1,69 @@
+"""/events: changes in the queue, training, stages, jobs, people and shapes, pushed to open pages."""
+
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Annotated, Any
+
+import anyio
+from anyio.to_thread import run_sync
+from fastapi import APIRouter, Header, Query, Request
+from fastapi.responses import StreamingResponse
+
+from partwise.store.catalog import Catalog
+from partwise.store.records import Event
+from partwise_service.dependencies import Caller, CatalogDep, ServiceDep
+from partwise_service.event_stream import PAGE, event_stream
+from partwise_service.security.identity import Identity
+
+POLL_S = 1.0
+CHECK_S = 30.0
+MAX_EVENT_ID = 2**53
+router = APIRouter(tags=["events"])
+EVENT_STREAM = "text/event-stream"
+_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"content": {EVENT_STREAM: {"schema": {"type": "string"}}}, "description": "Until the client goes."}
+}
+LastId = Annotated[str | None, Header(pattern="^[0-9]{1,15}$", description="The last id that the client has.")]
+AfterId = Annotated[int | None, Query(ge=0, le=MAX_EVENT_ID, description="The same, for clients without the header.")]
+
+
+@router.get("/events", responses=_RESPONSES, response_class=StreamingResponse)
+async def stream_events(
+    request: Request,
+    caller: Caller,
+    service: ServiceDep,
+    catalog: CatalogDep,
+    last_event_id: LastId = None,
+    after: AfterId = None,
+) -> StreamingResponse:
+    """Server-sent events of the collections that the caller may see, after `Last-Event-ID`, or from now on.
+
+    The first is `begin`, or `missed` if some since then are forgotten: then read everything anew.
+    """
+    scope = caller.token.scope
+    begun = checked = time.monotonic()
+
+    async def read(last: int) -> Sequence[Event]:
+        return await run_sync(lambda: catalog.events(after=last, collection_ids=scope, limit=PAGE))
+
+    async def go_on() -> bool:
+        nonlocal checked
+        if time.monotonic() - begun >= service.settings.event_stream_s:
+            return False
+        await anyio.sleep(POLL_S)
+        if time.monotonic() - checked >= CHECK_S:
+            checked = time.monotonic()
+            if not await run_sync(lambda: is_still_good(catalog, caller)):
+                return False
+        return not await request.is_disconnected()
+
+    resumed = after if last_event_id is None else int(last_event_id)
+    stream = event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed)
+    return StreamingResponse(stream, media_type=EVENT_STREAM, headers={"X-Accel-Buffering": "no"})
+
+
+def is_still_good(catalog: Catalog, caller: Identity) -> bool:
+    """Whether the token that opened a stream has neither ended nor been revoked since."""
+    token = catalog.token(caller.token.id)
+    return token.revoked_at is None and token.expires_at > datetime.now(UTC)

@@ -1,0 +1,232 @@
+"""Drafts: strokes acknowledged once they are committed, both sides of a conflict, and what is confirmed."""
+
+from uuid import uuid4
+
+import numpy as np
+import pytest
+from safetensors.numpy import load
+
+from partwise.labels.encoding import labels_sha256
+from partwise.store.records import NewRevision, RevisionKind, Role
+
+AT = "2026-11-22T12:00:00Z"
+
+
+class Bench:
+    """An annotator at a shape of four faces."""
+
+    def __init__(self, caller, workspace, mugs, name: str, base_revision: int | None = None) -> None:
+        self.caller = caller
+        self.person_id = workspace.catalog.get_person(name).id
+        self.shape_id = mugs.ids["a.off"]
+        body = {"collection_id": mugs.collection_id, "shape_ids": [self.shape_id]}
+        self.lease = caller.post("/queue/claim", json=body).json()["items"][0]
+        self.base_revision = base_revision
+        self.draft = self.open().json()
+        self.path = f"/drafts/{self.draft['id']}"
+
+    def open(self):
+        return self.caller.post(f"/leases/{self.lease['id']}/draft", json={"base_revision": self.base_revision})
+
+    def stroke(self, sequence: int, face: int = 0, label: int = 1) -> dict:
+        return {
+            "v": 1,
+            "kind": "assign",
+            "runs": [[face, 1]],
+            "label": label,
+            "id": str(uuid4()),
+            "sequence": sequence,
+            "base_revision": self.base_revision,
+            "author_id": self.person_id,
+            "at": AT,
+        }
+
+    def send(self, *strokes: dict, expected: int | None = None):
+        sequence = strokes[0]["sequence"] if expected is None else expected
+        return self.caller.post(f"{self.path}/strokes", json={"expected_sequence": sequence, "strokes": list(strokes)})
+
+    def confirm(self, n_strokes: int, **body):
+        return self.caller.post(f"{self.path}/confirm", json=body, headers={"If-Match": f'"{n_strokes}"'})
+
+
+@pytest.fixture
+def bench(annotator, workspace, mugs) -> Bench:
+    return Bench(annotator, workspace, mugs, "ann")
+
+
+def _others_labels(workspace, mugs) -> int:
+    mesh = mugs.meshes["a.off"]
+    eve = workspace.catalog.add_person("eve")
+    new = NewRevision(mugs.ids["a.off"], mesh.content_hash(), RevisionKind.HUMAN, eve.id, 1, np.full(mesh.n_faces, 2))
+    return workspace.catalog.add_revision(new).id
+
+
+def test_a_draft_keeps_its_mesh_for_good(bench, workspace) -> None:
+    assert workspace.catalog.mesh(bench.shape_id, bench.draft["mesh_hash"]).kept_key is not None
+
+
+def test_strokes_are_on_record_as_they_were_sent(bench) -> None:
+    strokes = [bench.stroke(0), bench.stroke(1, 2, 2)]
+    answer = bench.send(*strokes)
+    assert (answer.json()["n_strokes"], answer.headers["etag"]) == (2, '"2"')
+    recorded = bench.caller.get(f"{bench.path}/strokes").json()
+    assert [each["id"] for each in recorded["items"]] == [stroke["id"] for stroke in strokes]
+    assert recorded["items"][0]["payload"]["runs"] == [[0, 1]]
+
+
+def test_sending_again_adds_nothing(bench) -> None:
+    stroke = bench.stroke(0)
+    assert [bench.send(stroke).json()["n_strokes"] for _ in range(3)] == [1, 1, 1]
+
+
+def test_an_overlapping_sending_adds_the_rest(bench) -> None:
+    first, second = bench.stroke(0), bench.stroke(1)
+    bench.send(first)
+    assert bench.send(first, second).json()["n_strokes"] == 2
+
+
+def test_the_log_comes_in_pages(bench) -> None:
+    bench.send(*(bench.stroke(n) for n in range(3)))
+    page = bench.caller.get(f"{bench.path}/strokes", params={"limit": 2}).json()
+    assert ([each["sequence"] for each in page["items"]], page["next"]) == ([0, 1], 1)
+    rest = bench.caller.get(f"{bench.path}/strokes", params={"after": page["next"]}).json()
+    assert ([each["sequence"] for each in rest["items"]], rest["next"]) == ([2], None)
+
+
+def test_a_stale_stroke_is_refused_with_both_sides(bench) -> None:
+    here, elsewhere = bench.stroke(0), bench.stroke(0, 3)
+    bench.send(elsewhere)
+    answer = bench.send(here)
+    problem = answer.json()
+    assert (answer.status_code, problem["state"]["n_strokes"]) == (409, 1)
+    assert [each["id"] for each in problem["recorded"]] == [elsewhere["id"]]
+    assert problem["refused"] == [here]
+
+
+def test_a_stroke_from_another_base_is_refused_with_both_sides(bench) -> None:
+    stroke = {**bench.stroke(0), "base_revision": 7}
+    answer = bench.send(stroke)
+    assert (answer.status_code, answer.json()["refused"]) == (409, [stroke])
+    assert answer.json()["state"]["base_revision"] is None
+
+
+@pytest.mark.parametrize(
+    "change", [{"author_id": 999}, {"kind": "guess"}, {"id": "one"}, {"sequence": 5}, {"label": 70_000}, {"more": 1}]
+)
+def test_a_malformed_stroke_is_refused_and_nothing_recorded(bench, change) -> None:
+    assert bench.send({**bench.stroke(0), **change}, expected=0).status_code == 422
+    assert bench.caller.get(bench.path).json()["n_strokes"] == 0
+
+
+def test_labels_of_a_draft(bench) -> None:
+    bench.send(bench.stroke(0, 1, 2))
+    answer = bench.caller.get(f"{bench.path}/labels")
+    arrays = load(answer.content)
+    assert (arrays["labels"].tolist(), arrays["base"].tolist()) == ([0, 2, 0, 0], [0, 0, 0, 0])
+    held = {"If-None-Match": answer.headers["etag"]}
+    assert bench.caller.get(f"{bench.path}/labels", headers=held).status_code == 304
+    bench.send(bench.stroke(1, 2, 2))
+    assert bench.caller.get(f"{bench.path}/labels", headers=held).status_code == 200
+
+
+def test_confirming_makes_the_strokes_labels(bench) -> None:
+    bench.send(*(bench.stroke(n, n) for n in range(4)))
+    done = bench.confirm(4).json()
+    labels = load(bench.caller.get(f"/shapes/{bench.shape_id}/labels").content)["labels"]
+    assert labels.tolist() == [1, 1, 1, 1]
+    assert done == {"draft_id": bench.draft["id"], "shape_id": bench.shape_id, "labels_sha256": labels_sha256(labels)}
+    assert bench.caller.get("/leases").json()["items"] == []
+
+
+def test_confirming_twice_is_confirming_once(bench, workspace) -> None:
+    bench.send(*(bench.stroke(n, n) for n in range(4)))
+    assert bench.confirm(4).json() == bench.confirm(4).json()
+    assert len(workspace.catalog.revisions(bench.shape_id)) == 1
+
+
+def test_completing_a_lease_confirms_its_draft(bench) -> None:
+    bench.send(*(bench.stroke(n, n) for n in range(4)))
+    answer = bench.caller.post(f"/leases/{bench.lease['id']}/complete", json={"n_strokes": 4})
+    assert answer.json()["draft_id"] == bench.draft["id"]
+
+
+def test_a_lease_without_a_draft_cannot_be_completed(annotator, mugs) -> None:
+    lease = annotator.post("/queue/claim", json={"collection_id": mugs.collection_id}).json()["items"][0]
+    assert annotator.post(f"/leases/{lease['id']}/complete", json={"n_strokes": 0}).status_code == 409
+
+
+def test_strokes_that_the_person_did_not_know_of_are_not_confirmed(bench) -> None:
+    unknown = bench.stroke(1, 1)
+    bench.send(bench.stroke(0), unknown)
+    answer = bench.confirm(1)
+    assert (answer.status_code, answer.json()["state"]["n_strokes"]) == (409, 2)
+    assert [each["id"] for each in answer.json()["recorded"]] == [unknown["id"]]
+
+
+def test_other_labels_than_the_person_sees_are_not_confirmed(bench) -> None:
+    bench.send(bench.stroke(0))
+    assert bench.confirm(1, labels_sha256="0" * 64).status_code == 409
+
+
+def test_a_confirmation_must_say_what_it_is_of(bench) -> None:
+    assert bench.caller.post(f"{bench.path}/confirm", json={}).status_code == 422
+
+
+def test_nobody_confirms_over_labels_they_have_not_seen(bench, workspace, mugs) -> None:
+    bench.send(bench.stroke(0))
+    revision_id = _others_labels(workspace, mugs)
+    refused = bench.confirm(1)
+    assert (refused.status_code, refused.json()["state"]["head_revision"]) == (409, revision_id)
+    stale = bench.caller.post(f"{bench.path}/acknowledge", json={"revision_id": revision_id + 1})
+    assert (stale.status_code, stale.json()["state"]["head_revision"]) == (409, revision_id)
+    bench.caller.post(f"{bench.path}/acknowledge", json={"revision_id": revision_id})
+    assert bench.confirm(1).status_code == 200
+
+
+def test_a_draft_goes_on_where_it_was_left(bench) -> None:
+    bench.send(bench.stroke(0))
+    again = bench.open().json()
+    assert (again["id"], again["n_strokes"]) == (bench.draft["id"], 1)
+    assert bench.caller.get("/leases").json()["items"][0]["draft_id"] == bench.draft["id"]
+
+
+def test_a_draft_outlives_its_lease(bench) -> None:
+    bench.send(bench.stroke(0))
+    bench.caller.post(f"/leases/{bench.lease['id']}/release")
+    assert bench.send(bench.stroke(1)).json()["n_strokes"] == 2
+    assert [each["id"] for each in bench.caller.get("/drafts").json()["items"]] == [bench.draft["id"]]
+    assert bench.caller.get(f"/shapes/{bench.shape_id}/draft").json()["n_strokes"] == 2
+
+
+def test_a_draft_may_start_from_labels(annotator, workspace, mugs) -> None:
+    revision_id = _others_labels(workspace, mugs)
+    bench = Bench(annotator, workspace, mugs, "ann", revision_id)
+    assert bench.draft["base_revision"] == revision_id
+    bench.send(bench.stroke(0, 0, 1))
+    assert load(annotator.get(f"{bench.path}/labels").content)["labels"].tolist() == [1, 2, 2, 2]
+
+
+def test_a_discarded_draft_takes_no_more_strokes(bench) -> None:
+    bench.send(bench.stroke(0))
+    assert bench.caller.post(f"{bench.path}/discard").json()["outcome"] == "discarded"
+    assert bench.send(bench.stroke(1)).status_code == 409
+    assert len(bench.caller.get(f"{bench.path}/strokes").json()["items"]) == 1
+    assert bench.confirm(1).status_code == 409
+
+
+def test_another_persons_draft_does_not_exist(bench, issue, mugs) -> None:
+    ben = issue("ben", Role.ANNOTATOR, (mugs.collection_id,))
+    paths = [bench.path, f"{bench.path}/strokes", f"{bench.path}/labels", f"/shapes/{bench.shape_id}/draft"]
+    assert {ben.get(path).status_code for path in paths} == {404}
+    bench.caller = ben
+    assert {bench.send(bench.stroke(0)).status_code, bench.confirm(0).status_code} == {404}
+
+
+def test_an_operator_may_look_at_a_draft_but_not_add_to_it(bench, operator) -> None:
+    assert operator.get(bench.path).json()["id"] == bench.draft["id"]
+    bench.caller = operator
+    assert bench.send(bench.stroke(0)).status_code in (409, 422)
+
+
+def test_there_is_no_draft_of_an_untouched_shape(annotator, mugs) -> None:
+    assert annotator.get(f"/shapes/{mugs.ids['b.off']}/draft").status_code == 404
