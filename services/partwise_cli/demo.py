@@ -162,14 +162,15 @@ def remeshing_of(workspace: Workspace, collection: Collection) -> Remeshing:
 
 
 def _confirm_first_shapes(workspace: Workspace, collection: Collection, request: DemoRequest) -> set[int]:
-    """The simulated annotator labels the first shapes as ground truth says. Returns their ids."""
+    """The simulated annotator labels the first shapes as ground truth says, where there is any. Returns their ids."""
     firsts = select_first_shapes(workspace, collection, request.n_confirmed, 1, request.seed)
-    shapes = workspace.catalog.shapes_by_id([first.shape_id for first in firsts])
-    for shape in shapes.values():
+    confirmed = set()
+    for shape in workspace.catalog.shapes_by_id([first.shape_id for first in firsts]).values():
         truth = reference_labels(workspace, shape_mesh(workspace, shape))
         if truth is not None:
             commit_labels(workspace, collection, shape, truth, RevisionKind.HUMAN, ANNOTATOR)
-    return set(shapes)
+            confirmed.add(shape.id)
+    return confirmed
 
 
 def _learn_and_report(

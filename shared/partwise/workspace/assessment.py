@@ -6,9 +6,8 @@ import numpy as np
 
 from partwise.geometry.faces import face_areas
 from partwise.metrics.accuracy import accuracy, accuracy_by_area
-from partwise.store.records import Collection, RevisionKind, Shape
+from partwise.store.records import Collection, Shape
 from partwise.unlabelled import NO_CLASS, NO_PART_ID
-from partwise.workspace.relabel import MIN_AGREEMENT
 from partwise.workspace.segmentations import Segmentation, reference_labels, segmented_shapes
 from partwise.workspace.shapes import load_mesh
 from partwise.workspace.workspace import Workspace
@@ -24,14 +23,11 @@ class ShapeAccuracy:
 
 
 def assess(workspace: Workspace, collection: Collection, segmentation: Segmentation) -> list[ShapeAccuracy]:
-    """Every shape that has such labels and ground truth on the same mesh, by id.
-
-    Ground truth that was moved to this mesh and suffered on the way is none: what differs may be its own error.
-    """
+    """Every shape that has such labels and ground truth on the same mesh (see `reference_labels`), by id."""
     assessed = []
     for segmented in segmented_shapes(workspace, collection, segmentation):
         truth = reference_labels(workspace, segmented.mesh)
-        if truth is None or not truth.any() or _has_suffered(workspace, segmented.shape):
+        if truth is None or not truth.any():
             continue
         labels, true_labels = (
             np.where(ids == NO_PART_ID, NO_CLASS, ids.astype(np.int64)) for ids in (segmented.labels, truth)
@@ -41,8 +37,3 @@ def assess(workspace: Workspace, collection: Collection, segmentation: Segmentat
             ShapeAccuracy(segmented.shape, accuracy(labels, true_labels), accuracy_by_area(labels, true_labels, areas))
         )
     return assessed
-
-
-def _has_suffered(workspace: Workspace, shape: Shape) -> bool:
-    head = workspace.catalog.head_revision(shape.id, (RevisionKind.REFERENCE,))
-    return head is not None and head.origin is not None and head.origin.agreement < MIN_AGREEMENT

@@ -9,6 +9,7 @@ from jaxtyping import UInt16
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, Mesh, RevisionKind, Shape
 from partwise.workspace.choices import Segmentation as Segmentation
+from partwise.workspace.relabel import MIN_AGREEMENT
 from partwise.workspace.shapes import pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
@@ -59,9 +60,15 @@ def segment(workspace: Workspace, shapes: Sequence[Shape], segmentation: Segment
 
 
 def reference_labels(workspace: Workspace, mesh: Mesh) -> UInt16[np.ndarray, " m"] | None:
-    """Ground truth on this very mesh, for experiments; None if there is none. Never trained on, never shown."""
+    """Ground truth on this very mesh, for experiments; None if there is none. Never trained on, never shown.
+
+    Ground truth that was moved to this mesh and suffered on the way is none: what differs may be its own error.
+    """
     head = workspace.catalog.head_revision(mesh.shape_id, (RevisionKind.REFERENCE,))
-    return None if head is None or head.mesh_hash != mesh.mesh_hash else workspace.catalog.labels(head.id)
+    if head is None or head.mesh_hash != mesh.mesh_hash:
+        return None
+    has_suffered = head.origin is not None and head.origin.agreement < MIN_AGREEMENT
+    return None if has_suffered else workspace.catalog.labels(head.id)
 
 
 def _labels_of_run(

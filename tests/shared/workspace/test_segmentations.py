@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from partwise.mesh import TriMesh
-from partwise.store.records import RevisionKind
+from partwise.store.records import NewRevision, RevisionKind
+from partwise.store.reviews import RevisionOrigin
 from partwise.testing.workspaces import publish_meshes
 from partwise.workspace.choices import Segmentation
 from partwise.workspace.labelling import commit_labels
+from partwise.workspace.relabel import MIN_AGREEMENT
 from partwise.workspace.segmentations import reference_labels, segment, segmented_shapes
 from partwise.workspace.shapes import shape_mesh
 
@@ -42,6 +44,18 @@ def test_reference_labels_are_never_shown(filled) -> None:
     assert np.array_equal(
         reference_labels(filled.workspace, shape_mesh(filled.workspace, filled.shape("a.off"))), LABELS
     )
+
+
+@pytest.mark.parametrize(("agreement", "is_truth"), [(MIN_AGREEMENT, True), (MIN_AGREEMENT - 0.001, False)])
+def test_ground_truth_that_suffered_on_the_way_is_none(filled, agreement: float, is_truth: bool) -> None:
+    _commit(filled.preprocessed(), "a.off", RevisionKind.REFERENCE)
+    shape, catalog = filled.shape("a.off"), filled.workspace.catalog
+    head = catalog.head_revision(shape.id, (RevisionKind.REFERENCE,))
+    origin = RevisionOrigin(head.mesh_hash, head.id, agreement)
+    catalog.add_revision(
+        NewRevision(shape.id, head.mesh_hash, head.kind, head.author_id, 1, LABELS, parent_id=head.id, origin=origin)
+    )
+    assert (reference_labels(filled.workspace, shape_mesh(filled.workspace, shape)) is not None) == is_truth
 
 
 def test_a_shape_without_ground_truth_has_none(filled) -> None:
