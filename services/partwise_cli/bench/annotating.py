@@ -23,6 +23,7 @@ from partwise.simulate.annotator.sight import Sight
 from partwise_cli.bench.agreement import Agreement, agreement, mean_agreement
 from partwise_cli.bench.paired import PairedDifference, paired_difference
 from partwise_cli.bench.patches import TrueShape
+from partwise_cli.bench.shape_random import shape_rng
 from partwise_cli.bench.simulated_predictions import drawn_accuracy, simulate_prediction
 
 TARGETS = (0.95, 0.97)
@@ -197,7 +198,7 @@ def _annotated(task: TaskShape, seed: int, target: float) -> Iterator[tuple[Star
     sight, schema = Sight.of(mesh, truth + 1), schema_of(task.part_names)
     cutter, refiner = RandomWalkPatches(mesh, diameters), BoundaryRefiner.build(mesh, diameters)
     patches = [cutter.patches(min(n, mesh.n_faces)) for n in SLIDER]
-    for start, labels in _starts(task, _rng(seed, task, "prediction")).items():
+    for start, labels in _starts(task, shape_rng(seed, task.shape.name, "prediction")).items():
         if labels is not None:
             yield start, "start", agreement(mesh, labels, truth, names), None
         for refinement in (False, True):
@@ -209,7 +210,9 @@ def _annotated(task: TaskShape, seed: int, target: float) -> Iterator[tuple[Star
                 refine=refiner.refine if refinement else None,
                 target=target,
             )
-            rng = _rng(seed, task, start)  # the same with and without: logs differ only from the first refinement on
+            rng = shape_rng(
+                seed, task.shape.name, start
+            )  # the same with and without: logs differ only from the first refinement on
             made = annotate(mesh, sight, schema, equipment, rng, None if labels is None else labels + 1)
             yield start, which, agreement(mesh, made.labels.astype(np.int64) - 1, truth, names), made
 
@@ -239,11 +242,6 @@ def _row(name: str, start: Start, refinement: bool, target: float, made: Annotat
         undos=cost.undos,
         active_s=round(cost.active_s, 2),
     )
-
-
-def _rng(seed: int, task: TaskShape, purpose: str) -> np.random.Generator:
-    key = tuple(f"{task.shape.name} {purpose}".encode())
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
 
 
 def _plain(pair: PairedDifference) -> dict[str, Any]:

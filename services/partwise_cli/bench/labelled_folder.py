@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Int
 
-from partwise.errors import LabelError, NotEnoughDataError, NotFoundError
+from partwise.errors import FileFormatError, LabelError, MeshError, NotEnoughDataError, NotFoundError
 from partwise.exchange.labels_psb import read_psb_labels
 from partwise.exchange.named_labels import to_part_ids
 from partwise.exchange.seg import read_seg
@@ -81,7 +81,11 @@ def sampled(files: Sequence[ShapeFile], limit: int | None) -> list[ShapeFile]:
 def fully_labelled(files: Sequence[ShapeFile], refused: list[str]) -> Iterator[tuple[ShapeFile, TrueShape]]:
     """Shapes whose every face has a true part, one at a time; why the others are left out goes to `refused`."""
     for file in files:
-        shape = file.read()
+        try:
+            shape = file.read()
+        except (FileFormatError, LabelError, MeshError) as error:
+            refused.append(str(error) if str(file.mesh.parent) in str(error) else f"{file.mesh}: {error}")
+            continue
         n_unlabelled = int((shape.truth == NO_CLASS).sum())
         if n_unlabelled:
             refused.append(

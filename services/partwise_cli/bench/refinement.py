@@ -26,6 +26,7 @@ from partwise.segmentation.random_walk_patches import RandomWalkPatches
 from partwise.unlabelled import NO_CLASS
 from partwise_cli.bench.displacement import FURTHEST, WAVELENGTH, displaced
 from partwise_cli.bench.patches import TrueShape, best_labels
+from partwise_cli.bench.shape_random import shape_rng
 
 N_PASSES = 5
 N_PATCHES = 40
@@ -72,10 +73,14 @@ class BoundaryMeasurement:
     wavelength: float
     rows: tuple[BoundaryRow, ...]
 
-    def mean(self, variant: str) -> dict[str, Any]:
+    @property
+    def _variants(self) -> list[str]:
+        return list(dict.fromkeys(row.variant for row in self.rows))
+
+    def mean(self, variant: str, category: str | None = None) -> dict[str, Any]:
         """Means over shapes, each counting the same. Gain and loss in points of area per pass, distances in percent of
-        the diagonal."""
-        rows = [row for row in self.rows if row.variant == variant]
+        the diagonal. category : shapes `<category>/…` only; None for all."""
+        rows = [row for row in self.rows if row.variant == variant and category in (None, category_of(row.shape))]
 
         def mean_of(name: str) -> Float[np.ndarray, " n"]:
             return 100 * np.mean([getattr(row, name) for row in rows], axis=0)
@@ -101,9 +106,18 @@ class BoundaryMeasurement:
             "furthest": self.furthest,
             "wavelength": self.wavelength,
             "n_shapes": len({row.shape for row in self.rows}),
-            "means": {variant: self.mean(variant) for variant in VARIANTS},
+            "means": {variant: self.mean(variant) for variant in self._variants},
+            "by_category": {
+                category: {variant: self.mean(variant, category) for variant in self._variants}
+                for category in sorted({category_of(row.shape) for row in self.rows})
+            },
             "rows": [_plain(row) for row in self.rows],
         }
+
+
+def category_of(shape: str) -> str:
+    """`Cup` of `Cup/21`; empty where shapes have no categories."""
+    return shape.rpartition("/")[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,10 +165,9 @@ def measure_boundary_refinement(
     NotEnoughDataError : no shapes.
     LabelError : a shape with unlabelled faces.
     """
-    root = np.random.SeedSequence(seed)
     rows: list[BoundaryRow] = []
     for shape in shapes:
-        rng = np.random.default_rng(root.spawn(1)[0])
+        rng = shape_rng(seed, shape.name, "boundaries")
         moved = displaced(shape.mesh, shape.truth, rng, furthest, wavelength)
         diameters = shape_diameter(shape.mesh).astype(np.float64)
         patches = RandomWalkPatches(shape.mesh, diameters).patches(min(N_PATCHES, shape.mesh.n_faces))
@@ -180,10 +193,9 @@ def measure_model_refinement_time(
     NotEnoughDataError : no shapes.
     LabelError : a shape with unlabelled faces.
     """
-    root = np.random.SeedSequence(seed)
     rows: list[ModelRefinementRow] = []
     for shape in shapes:
-        rng = np.random.default_rng(root.spawn(1)[0])
+        rng = shape_rng(seed, shape.name, "model")
         moved = displaced(shape.mesh, shape.truth, rng)
         rows += [_timed(shape, noisy_probabilities(moved, n, rng)) for n in n_labels]
         if on_shape is not None:

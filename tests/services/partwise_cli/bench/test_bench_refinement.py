@@ -1,6 +1,7 @@
 """The benchmark of refinement: its rows, its means, and what it is given to measure."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -86,3 +87,18 @@ def test_model_refinement_has_a_row_for_each_number_of_labels(mug):
 def test_refuses_an_empty_folder(measure):
     with pytest.raises(NotEnoughDataError, match="there are none"):
         measure([], seed=0)
+
+
+def test_what_a_shape_gets_depends_on_no_other_shape(mug, measured):
+    before = TrueShape("first", mug.mesh, mug.truth)
+    rows = measure_boundary_refinement([before, mug], seed=3, n_passes=2).rows
+    of_mug = [row.displaced for row in rows if row.shape == "mug"]
+    assert of_mug == [row.displaced for row in measured.rows]
+
+
+def test_means_of_a_category_are_those_of_its_shapes(measured):
+    row = measured.rows[0]
+    inside = replace(row, shape="Cup/1", displaced=(0.5, 0.6, 0.6))
+    both = replace(measured, rows=(row, inside)).as_json()
+    assert both["by_category"]["Cup"][row.variant]["displaced"] == 50.0
+    assert set(both["by_category"]) == {"", "Cup"}

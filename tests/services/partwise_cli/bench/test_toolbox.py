@@ -134,3 +134,13 @@ def test_a_shape_with_unlabelled_faces_is_left_out_and_named(folder, tmp_path, t
     result = invoke("bench", "toolbox", tmp_path, "--only", "model,annotator", "--json")
     assert json.loads(result.stdout)["n_shapes"] == {"model": 1, "annotator": 1}
     assert result.stderr.count("1 faces have no true part") == 2
+
+
+def test_a_damaged_file_costs_only_itself(folder, tmp_path, invoke):
+    for ending in (".off", "_labels.txt"):
+        shutil.copy(folder / "mugs" / f"0{ending}", tmp_path / f"whole{ending}")
+        shutil.copy(folder / "mugs" / f"0{ending}", tmp_path / f"cut{ending}")
+    (tmp_path / "cut.off").write_bytes(b"OFF\n4 4 0\n0 0 0\n")
+    result = invoke("bench", "toolbox", tmp_path, "--only", "model", "--json")
+    assert json.loads(result.stdout)["n_shapes"] == {"model": 1}
+    assert "cut.off" in result.stderr
