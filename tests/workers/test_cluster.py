@@ -4,8 +4,17 @@ import socket
 from collections.abc import Iterator
 
 import pytest
+import ray
 
-from partwise_workers.cluster import THREAD_VARIABLES, Cores, Crew, cores, require_listener, thread_environment
+from partwise_workers.cluster import (
+    THREAD_VARIABLES,
+    Cores,
+    Crew,
+    cores,
+    is_node_lost,
+    require_listener,
+    thread_environment,
+)
 
 WORKSTATION = Cores(total=16, largest_node=16, smallest_node=16)
 CLUSTER = Cores(total=64, largest_node=8, smallest_node=4)
@@ -67,3 +76,13 @@ def test_rays_own_words_for_addresses_are_left_to_it(address: str) -> None:
 @pytest.mark.usefixtures("local_ray")
 def test_cores_are_those_of_the_connected_ray() -> None:
     assert cores() == Cores(2, 2, 2)
+
+
+@pytest.mark.usefixtures("local_ray")
+def test_a_node_that_is_there_is_not_lost() -> None:
+    assert not is_node_lost(ray.get_runtime_context().get_node_id())
+
+
+@pytest.mark.usefixtures("local_ray")
+def test_a_node_that_ray_does_not_list_as_alive_is_lost() -> None:
+    assert is_node_lost("ab" * 28)

@@ -138,6 +138,18 @@ def test_an_idle_actor_that_dies_costs_its_next_shape_an_attempt_only(make_bench
     assert sorted(run.attempts for run in bench.done("first").values()) == [1, 1, 1, 2]
 
 
+def test_a_shape_whose_node_is_lost_is_not_blamed(make_bench, monkeypatch) -> None:
+    monkeypatch.setattr(pool, "is_node_lost", lambda node_id: True)
+    bench = make_bench({"a.off": "first: dies once", "b.off": ""}).with_workers(n_actors=1, max_attempts=1)
+    assert bench.run() == RunProgress(2, 0, 2)
+    assert [run.attempts for run in bench.done("first").values()] == [1, 1]
+
+
+def test_a_process_that_dies_by_itself_is_told_from_a_lost_node(make_bench) -> None:
+    bench = make_bench({"a.off": "first: dies"}).with_workers(n_actors=1, max_attempts=1)
+    assert bench.run() == RunProgress(0, 1, 1)
+
+
 def test_two_runs_at_once_publish_each_shape_once(make_bench) -> None:
     bench = make_bench(FOUR).with_workers(n_actors=1)
     bench.run(when(2, lambda: bench.run()))

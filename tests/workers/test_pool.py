@@ -7,14 +7,40 @@ import pytest
 import ray
 
 from partwise.config import StageLimits
+from partwise.store.records import FailureKind
 from partwise_workers import pool
 from partwise_workers.actors import StageWorker
-from partwise_workers.last_words import Progress, note_progress, read_progress
-from partwise_workers.pool import ActorPool
+from partwise_workers.last_words import LastWords, Progress, note_progress, read_progress
+from partwise_workers.pool import ActorPool, _Dead
 from partwise_workers.supervision import Rules
 from partwise_workers.tasks import StagedName
 
 pytestmark = pytest.mark.usefixtures("local_ray")
+
+
+FATAL = LastWords("Fatal Python error: Aborted")
+LARGE = LastWords(is_over_memory=True)
+UNEXPLAINED = LastWords("it was at work")
+
+
+@pytest.mark.parametrize(
+    ("words", "is_unreachable", "is_own_fault", "is_explained"),
+    [
+        (None, False, False, False),
+        (UNEXPLAINED, False, False, True),
+        (UNEXPLAINED, True, False, False),  # its node may be lost, as Ray has yet to find out
+        (FATAL, True, True, True),
+        (LARGE, True, True, True),
+    ],
+)
+def test_what_last_words_explain(
+    words: LastWords | None, is_unreachable: bool, is_own_fault: bool, is_explained: bool
+) -> None:
+    dead = _Dead(
+        job=None, worker=None, kind=FailureKind.CRASH, why="", is_unreachable=is_unreachable, seconds=0, until=0
+    )
+    dead.words = words
+    assert (dead.is_own_fault, dead.is_explained) == (is_own_fault, is_explained)
 
 
 def pool_of(bench) -> ActorPool:

@@ -6,7 +6,7 @@ import pytest
 
 from partwise.config import LimitsConfig, StageLimits
 from partwise.store.records import FailureKind
-from partwise_workers.supervision import LOG_CHARACTERS, Death, Job, Rules, limits_of
+from partwise_workers.supervision import LOG_CHARACTERS, MAX_LOST_NODES, Death, Job, Rules, limits_of
 from partwise_workers.tasks import ShapeTask, StagedResult, StageFailure
 
 TASK = ShapeTask(7, "a.off", "sources/a", (("first", "k1"), ("second", "k2")), {})
@@ -78,6 +78,48 @@ def test_tries_are_bounded_by_steps_times_attempts(n_steps: int, max_attempts: i
     while lives(job, CRASH, str(len(job.call.failed_steps)), n_steps=n_steps, max_attempts=max_attempts):
         n_tries += 1
     assert n_tries == job.n_tries == n_steps * max_attempts
+
+
+def lost() -> Death:
+    return replace(death(CRASH), is_node_lost=True)
+
+
+def test_a_lost_node_counts_as_no_try() -> None:
+    job = Job(TASK)
+    for _ in range(2):
+        job.begin()
+        assert job.bury(lost(), rules(max_attempts=1)) is None
+    job.begin()
+    assert job.n_tries == 1
+
+
+def test_a_lost_node_uncounts_no_try_where_a_finished_stage_was_found_again() -> None:
+    job = Job(TASK)
+    job.begin()
+    job.add(done("first"))
+    lives(job, CRASH)
+    job.begin()
+    assert job.bury(lost(), rules()) is None
+    for stage in ("first", "second"):
+        job.begin()
+        job.add(done(stage))
+    assert job.outcome().tries == {"first": 1, "second": 2}
+
+
+def test_what_was_refused_before_the_node_was_lost_is_not_made_again() -> None:
+    job = Job(TASK)
+    job.begin()
+    job.bury(replace(lost(), refused={"0": {}}), rules())
+    assert job.call.refused_steps == {"0": {}}
+
+
+def test_a_shape_that_loses_node_after_node_is_given_up() -> None:
+    job = Job(TASK)
+    verdicts = []
+    for _ in range(MAX_LOST_NODES + 2):
+        job.begin()
+        verdicts.append(job.bury(lost(), rules(max_attempts=2)) is None)
+    assert verdicts == [True] * (MAX_LOST_NODES + 1) + [False]
 
 
 def test_a_refused_step_is_passed_over_after_every_death() -> None:

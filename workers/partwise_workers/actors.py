@@ -25,7 +25,7 @@ from partwise.store.records import FailureKind
 from partwise_workers.last_words import Progress, last_words_name, note_progress, progress_name
 from partwise_workers.sentinel import resident_bytes
 from partwise_workers.stage import RunStage, Stage, StageResult, reason_of
-from partwise_workers.tasks import ShapeTask, StageCall, StagedName, StagedResult, StageFailure, StageReport
+from partwise_workers.tasks import ShapeTask, StageCall, StagedName, StagedResult, StageFailure, StageReport, Started
 from partwise_workers.watch import Sentinel, Unwatched, Watch
 
 logger = logging.getLogger(__name__)
@@ -128,14 +128,15 @@ class _StageWorker:
         self._watch: Watch = Unwatched()
         self._inputs: _TaskInputs | None = None
 
-    def start(self) -> int:
-        """Opens the store and the stages; returns the memory of the process, in bytes."""
+    def start(self) -> Started:
+        """Opens the store and the stages."""
         if self._limits is not None:
             self._watch = Sentinel(self._array_url)
         self._arrays: ArrayStore = open_array_store(self._array_url)
         for name, stage in self._stages.items():
             self._opened[name] = self._stack.enter_context(stage.open(self._arrays))
-        return resident_bytes(os.getpid())
+        node_id = ray.get_runtime_context().get_node_id() if ray.is_initialized() else ""
+        return Started(resident_bytes(os.getpid()), node_id)
 
     def close(self) -> None:
         """Closes what `start` opened."""

@@ -121,6 +121,11 @@ def require_living_node() -> None:
         )
 
 
+def is_node_lost(node_id: str) -> bool:
+    """Whether Ray has given a node up: preempted, switched off, out of reach. Ray takes seconds to."""
+    return not any(node["Alive"] for node in ray.nodes() if node["NodeID"] == node_id)  # type: ignore[no-untyped-call]
+
+
 def n_cores() -> int:
     """Cores of the connected Ray, at least one."""
     return cores().total

@@ -12,16 +12,16 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import ray
-from ray.exceptions import RayError, RayTaskError
+from ray.exceptions import ActorUnavailableError, RayError, RayTaskError
 
 from partwise.errors import PartwiseError, WorkerError
 from partwise.store.array_store import ArrayStore
 from partwise.store.records import FailureKind
-from partwise_workers.cluster import require_living_node
+from partwise_workers.cluster import is_node_lost, require_living_node
 from partwise_workers.events import ActorRestarted, OnEvent, ignore_events
 from partwise_workers.last_words import LastWords, last_words_name, read_progress, take_last_words, take_progress
 from partwise_workers.supervision import Death, Job, Rules, why_large, why_late
-from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageFailure, StageReport
+from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageFailure, StageReport, Started
 from partwise_workers.watch import BYTES_PER_GB
 
 logger = logging.getLogger(__name__)
@@ -30,7 +30,10 @@ Actor = Any  # Ray gives the methods of actors no types
 Reference: TypeAlias = "ray.ObjectRef[Any]"  # starts, runs and packs are waited for together
 
 MAX_FAILED_STARTS = 3
-"""Actors that may fail to start, one after the other, before the run ends: then it is not the shapes."""
+"""For each actor of the pool, so many may fail to start, none starting in between, before the run ends.
+
+A node that goes takes all actors that are starting on it along; an installation that is broken fails them all.
+"""
 
 CLOSING_S = 5.0
 """Seconds that an idle actor has to close its renderer before it is killed."""
@@ -38,18 +41,22 @@ CLOSING_S = 5.0
 LAST_WORDS_S = 10.0
 """Seconds that a dead actor's sentinel has to tell why. It takes about one, on a busy machine several."""
 
+UNREACHABLE_S = 45.0
+"""Seconds that Ray has to find out that a node is lost, of an actor that nobody reports as dead. It takes about 15."""
+
 RETAINED_SHARE = 0.5
 """Of the memory between a new actor's and the lowest ceiling: one that holds more between two stages is replaced."""
 
 
 @dataclass(slots=True)
 class _Worker:
-    """An actor, how many shapes it has had, and the memory that its process had when it was ready."""
+    """An actor, how many shapes it has had, the memory that its process had when it was ready, and its node."""
 
     actor: Actor
     id: str
     n_shapes: int = 0
     base_bytes: int = 0
+    node_id: str = ""
 
 
 @dataclass(slots=True)
@@ -62,16 +69,31 @@ class _Running:
     step_began: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _Dead:
-    """A job whose process died; `kind` and `why` are what the driver knows, the last words may know better."""
+    """A job whose process died; `kind` and `why` are what the driver knows, the last words may know better.
+
+    is_unreachable : its node did not say that it died, so that the node may be lost. words : once they are there.
+    """
 
     job: Job
+    worker: _Worker
     kind: FailureKind
     why: str
+    is_unreachable: bool
     seconds: float
-    words_as: str
     until: float
+    words: LastWords | None = None
+
+    @property
+    def is_own_fault(self) -> bool:
+        """Whether the last words say so: those of an actor that goes with its node's Ray are none or say nothing."""
+        return self.words is not None and (self.words.is_over_memory or self.words.fatal_error is not None)
+
+    @property
+    def is_explained(self) -> bool:
+        """Whether there is nothing to wait for any more."""
+        return self.is_own_fault or (self.words is not None and not self.is_unreachable)
 
 
 class ActorPool:
@@ -103,6 +125,7 @@ class ActorPool:
         self._closing: dict[Reference, tuple[_Worker, float]] = {}
         self._again: deque[Job] = deque()
         self._n_failed_starts = 0
+        self._max_failed_starts = MAX_FAILED_STARTS * n_actors
         for _ in range(n_actors):
             self._start_actor()
 
@@ -176,13 +199,13 @@ class ActorPool:
     def _welcome(self, reference: Reference) -> None:
         worker = self._starting.pop(reference)
         try:
-            worker.base_bytes = ray.get(reference)
+            started: Started = ray.get(reference)
         except RayError as error:
             ray.kill(worker.actor)
             raise_own(error)
             self._n_failed_starts += 1
             logger.warning("a worker process did not start", extra={"why": first_line(error)})
-            if self._n_failed_starts >= MAX_FAILED_STARTS:
+            if self._n_failed_starts >= self._max_failed_starts:
                 raise WorkerError(
                     f"worker processes must start but {self._n_failed_starts} in a row did not: {first_line(error)}; "
                     "is Partwise with its [workers] extra installed on every node? See `partwise doctor`"
@@ -190,6 +213,7 @@ class ActorPool:
             self._start_actor()
         else:
             self._n_failed_starts = 0
+            worker.base_bytes, worker.node_id = started.resident_bytes, started.node_id
             self._idle.append(worker)
 
     def _begin(self, job: Job) -> None:
@@ -209,7 +233,8 @@ class ActorPool:
             report: StageReport = ray.get(reference)
         except RayError as error:
             raise_own(error)
-            self._lose(running, FailureKind.CRASH, f"its process died ({first_line(error)})")
+            is_unreachable = isinstance(error, ActorUnavailableError)
+            self._lose(running, FailureKind.CRASH, f"its process died ({first_line(error)})", is_unreachable)
             return []
         is_bloated = self._is_bloated(worker, report.resident_bytes)
         failure: StageFailure | None = None
@@ -261,22 +286,24 @@ class ActorPool:
         running.step_began = running.started + progress.began_s
         return not self._is_late(running)
 
-    def _lose(self, running: _Running, kind: FailureKind, why: str) -> None:
-        """Replaces the actor, and waits for its last words."""
+    def _lose(self, running: _Running, kind: FailureKind, why: str, is_unreachable: bool = False) -> None:
+        """Replaces the actor, and waits for its last words, or for its node to be known as lost."""
         ray.kill(running.worker.actor)
         self._start_actor()
         now = time.monotonic()
-        words_as = last_words_name(running.job.call.name, running.worker.id)
-        self._dead.append(_Dead(running.job, kind, why, now - running.started, words_as, now + LAST_WORDS_S))
+        seconds, until = now - running.started, now + (UNREACHABLE_S if is_unreachable else LAST_WORDS_S)
+        self._dead.append(_Dead(running.job, running.worker, kind, why, is_unreachable, seconds, until))
 
     def _bury_the_dead(self) -> list[ShapeOutcome]:
         finished = []
         for dead in list(self._dead):
-            words = take_last_words(self._arrays, dead.words_as)
-            if words is None and time.monotonic() < dead.until:
+            if dead.words is None:
+                dead.words = take_last_words(self._arrays, last_words_name(dead.job.call.name, dead.worker.id))
+            is_lost = not dead.is_own_fault and is_node_lost(dead.worker.node_id)
+            if not (dead.is_explained or is_lost or time.monotonic() >= dead.until):
                 continue
             self._dead.remove(dead)
-            death = self._death(dead, words or LastWords())
+            death = self._death(dead, dead.words or LastWords(), is_lost)
             about = {"shape": dead.job.task.source_key, "n": dead.job.n_tries, "why": death.why}
             logger.warning("attempt failed", extra=about)
             self._on_event(ActorRestarted(death.kind))
@@ -287,17 +314,19 @@ class ActorPool:
                 finished.append(dead.job.outcome(failure))
         return finished
 
-    def _death(self, dead: _Dead, words: LastWords) -> Death:
+    def _death(self, dead: _Dead, words: LastWords, is_lost: bool) -> Death:
         call = dead.job.call
         has_steps = self._rules.n_steps[call.stage] > 1
         progress = take_progress(self._arrays, call.name) if has_steps else None
         step, refused = (None, {}) if progress is None else (progress.step, progress.refused)
         kind, why = dead.kind, dead.why
-        if words.is_over_memory:
+        if is_lost:
+            kind, why = FailureKind.CRASH, "its process went with its node"
+        elif words.is_over_memory:
             kind, why = FailureKind.MEMORY, why_large(self._rules.limits[call.stage], words.peak_bytes)
         elif kind is FailureKind.CRASH and words.fatal_error is not None:
             why = f"its process died ({words.fatal_error})"
-        return Death(kind, why, step, words.log, dead.seconds, refused)
+        return Death(kind, why, step, words.log, dead.seconds, refused, is_lost)
 
     def _recycle(self, worker: _Worker) -> None:
         """Replaces an actor that has done its share, or holds too much."""

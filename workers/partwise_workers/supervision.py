@@ -2,6 +2,7 @@
 
 A stage has steps (`Stage.n_steps`), most have one. A step that takes too long or too much memory would do so again, and
 has failed at once. A step whose process died by itself may have been unlucky: it is tried `max_attempts` times in all.
+A process that went with its whole node counts as no try.
 A shape goes on while its stage has steps left, so that a stage is tried `n_steps` x `max_attempts` times at most.
 Each step has the deadline to itself. One that the stage got through and refused is not run again on later tries; what
 it accepted is, as only the stage's end result is kept.
@@ -16,6 +17,9 @@ from typing import Any
 from partwise.config import LimitsConfig, StageLimits
 from partwise.store.records import FailureKind
 from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageCall, StagedResult, StageFailure
+
+MAX_LOST_NODES = 5
+"""Nodes that one shape may lose before it is suspected of taking them down."""
 
 LOG_CHARACTERS = 4000
 """Of a dead process' log that go on record."""
@@ -39,6 +43,7 @@ class Death:
     """How a process ended. step : that its stage was in, None outside of steps. why : without the remedy.
 
     refused : steps that its stage had refused by then, each with the stage's record of it.
+    is_node_lost : its whole node went, which is not put down to the shape.
     """
 
     kind: FailureKind
@@ -47,6 +52,7 @@ class Death:
     log: str
     seconds: float
     refused: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    is_node_lost: bool = False
 
 
 @dataclass(slots=True)
@@ -62,6 +68,7 @@ class Job:
     _n_reached: int = 0
     _tries: Counter[str] = field(default_factory=Counter)
     _crashes: Counter[tuple[str, str | None]] = field(default_factory=Counter)
+    _n_lost_nodes: int = 0
     _deaths: dict[str, Death] = field(default_factory=dict)
     _failed_steps: dict[str, dict[str, str]] = field(default_factory=dict)
     _refused_steps: dict[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
@@ -87,9 +94,18 @@ class Job:
     def begin(self) -> StageCall:
         """The next stage is sent to an actor; those that only find again what was finished count no try."""
         call = self.call
-        if len(self._results) == self._n_reached:
+        if self._is_at_its_own:
             self._tries[call.stage] += 1
         return call
+
+    @property
+    def _is_at_its_own(self) -> bool:
+        """Whether the stage at work is made, not found again."""
+        return len(self._results) == self._n_reached
+
+    def _uncount_try(self) -> None:
+        if self._is_at_its_own:
+            self._tries[self.call.stage] -= 1
 
     def add(self, result: StagedResult) -> None:
         """The stage at work is finished."""
@@ -116,8 +132,13 @@ class Job:
     def bury(self, death: Death, rules: Rules) -> StageFailure | None:
         """Takes in that the process of the present call died; None if the shape is to be tried again."""
         call, why = self.call, death.why
-        self._deaths[call.stage] = death
         self._refused_steps[call.stage] = {**call.refused_steps, **death.refused}
+        if death.is_node_lost and self._n_lost_nodes < MAX_LOST_NODES:
+            self._n_lost_nodes += 1
+            self._uncount_try()
+            self.restart()
+            return None
+        self._deaths[call.stage] = death
         if death.kind is FailureKind.CRASH:
             place = (call.stage, death.step)
             self._crashes[place] += 1

@@ -81,6 +81,14 @@ class StageFailure:
 
 
 @dataclass(frozen=True, slots=True)
+class Started:
+    """What an actor says once it is ready: the memory of its process, and the node that it is on, by Ray's name."""
+
+    resident_bytes: int
+    node_id: str
+
+
+@dataclass(frozen=True, slots=True)
 class StageReport:
     """What an actor says of a call: its result or its failure, and the memory that its process is left with."""
 
