@@ -106,6 +106,7 @@ class ToolProcess:
         Raises what the tool refuses; problems: 503 if the process is lost, the tool takes too long, or lacks a package.
         """
         connection = self._started()
+        self.mesh_hashes.append(call.mesh.mesh_hash)
         try:
             connection.send(call)
             if not connection.poll(self._limits.timeout_s):
@@ -175,7 +176,6 @@ class ToolPool:
         Raises what the tool refuses; problems: 503 with Retry-After if too many wait, and as `ToolProcess.run`.
         """
         process = self._taken(call.mesh.mesh_hash) if self._idle else await self._next_free()
-        process.mesh_hashes.append(call.mesh.mesh_hash)
         running = asyncio.get_running_loop().run_in_executor(self._threads, process.run, call)
         running.add_done_callback(lambda done: self._finished(process, done))
         return await asyncio.shield(running)
