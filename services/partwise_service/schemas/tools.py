@@ -16,7 +16,8 @@ Share = Annotated[float, Field(ge=0, le=1)]
 PresetName = Literal["default", "paper"]
 RunLabel = Annotated[int, Field(ge=0, le=65_535), WHOLE]
 RunLength = Annotated[int, Field(ge=1, le=MAX_FACES), WHOLE]
-Runs = Annotated[list[tuple[RunLabel, RunLength]], Field(min_length=1, max_length=MAX_RUNS)]
+Run = Annotated[tuple[RunLabel, RunLength], Field(strict=False)]  # JSON has lists only; their items stay strict
+Runs = Annotated[list[Run], Field(min_length=1, max_length=MAX_RUNS)]
 """Labels in face order as [part id, how many faces] pairs, 0 for unlabelled."""
 
 
