@@ -78,9 +78,11 @@ def test_each_step_has_the_deadline_to_itself(make_bench, monkeypatch: pytest.Mo
     task = next(bench.plan())
     name = StagedName("first", task.shape_id, dict(task.stage_keys)["first"])
     workers = pool_of(bench)
-    while read_progress(arrays, name) is None:
+    ((_, running),) = workers._running.items()
+    actor_id = running.worker.id
+    while read_progress(arrays, name, actor_id) is None:
         ray.wait(workers.references(), timeout=0.1)
-    note_progress(arrays, name, Progress("1", 0.9 * deadline_s, {}))
+    note_progress(arrays, name, actor_id, Progress("1", 0.9 * deadline_s, {}))
     now = time.monotonic()
     looks = []
     for later in (1.5, 2.0):

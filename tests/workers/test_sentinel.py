@@ -163,16 +163,24 @@ def test_last_words_are_taken_once(tmp_path: Path) -> None:
 
 def test_the_step_last_begun_is_found(tmp_path: Path) -> None:
     arrays, name = open_array_store(str(tmp_path)), StagedName("remesh", 3, "ab")
-    note_progress(arrays, name, Progress("attempt 0", 0.5, {}))
+    note_progress(arrays, name, "af", Progress("attempt 0", 0.5, {}))
     second = Progress("attempt 1", 20.5, {"attempt 0": {"refused": "too far"}})
-    note_progress(arrays, name, second)
-    assert read_progress(arrays, name) == second
-    assert take_progress(arrays, name) == second
-    assert take_progress(arrays, name) is None
+    note_progress(arrays, name, "af", second)
+    assert read_progress(arrays, name, "af") == second
+    assert take_progress(arrays, name, "af") == second
+    assert take_progress(arrays, name, "af") is None
 
 
 def test_a_damaged_step_counts_as_none(tmp_path: Path) -> None:
     arrays, name = open_array_store(str(tmp_path)), StagedName("remesh", 3, "ab")
-    note_progress(arrays, name, Progress("attempt 0", 0.5, {}))
-    (tmp_path / "staging" / progress_name(name)).write_bytes(b"half")
-    assert take_progress(arrays, name) is None
+    note_progress(arrays, name, "af", Progress("attempt 0", 0.5, {}))
+    (tmp_path / "staging" / progress_name(name, "af")).write_bytes(b"half")
+    assert take_progress(arrays, name, "af") is None
+
+
+def test_two_actors_do_not_share_a_step(tmp_path: Path) -> None:
+    arrays, name = open_array_store(str(tmp_path)), StagedName("remesh", 3, "ab")
+    for number, actor_id in enumerate(("af", "be")):
+        note_progress(arrays, name, actor_id, Progress(f"attempt {number}", 0.5, {}))
+    steps = [read_progress(arrays, name, actor_id) for actor_id in ("af", "be")]
+    assert [progress.step for progress in steps if progress] == ["attempt 0", "attempt 1"]

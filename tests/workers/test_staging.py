@@ -79,9 +79,9 @@ def test_the_number_swept_is_told(make_bench) -> None:
 def leave_behind(bench, stage: str, shape_id: int, key: str) -> list[str]:
     """The step and the last words of a process that died."""
     arrays, name = bench.workspace.arrays, StagedName(stage, shape_id, key)
-    note_progress(arrays, name, Progress("attempt 0", 0.0, {}))
+    note_progress(arrays, name, "af", Progress("attempt 0", 0.0, {}))
     arrays.stage(last_words_name(name, "af"), LastWords("log", 1, False).arrays())
-    return sorted([progress_name(name), last_words_name(name, "af")])
+    return sorted([progress_name(name, "af"), last_words_name(name, "af")])
 
 
 def test_what_a_dead_process_left_stays_while_its_shape_may_be_in_hand(make_bench) -> None:

@@ -164,7 +164,6 @@ class _StageWorker:
     def _result_of(self, call: StageCall, inputs: _TaskInputs) -> Mapping[str, np.ndarray] | StageFailure:
         if (staged := self._staged(call.name, inputs)) is not None:
             return staged
-        self._forget_steps(call)  # what an earlier run left would be blamed for what happens now
         started = time.perf_counter()
         result: Mapping[str, np.ndarray] | StageFailure
         try:
@@ -180,12 +179,12 @@ class _StageWorker:
 
     def _forget_steps(self, call: StageCall) -> None:
         if self._stages[call.stage].n_steps > 1:
-            self._arrays.delete_staged(progress_name(call.name))
+            self._arrays.delete_staged(progress_name(call.name, self._actor_id))
 
     def _begin(self, call: StageCall, progress: Progress | None) -> None:
         """Tells the driver and the sentinel which step the stage is in, None before the first."""
         if progress is not None:
-            note_progress(self._arrays, call.name, progress)
+            note_progress(self._arrays, call.name, self._actor_id, progress)
         if self._limits is not None:
             self._watch.at(last_words_name(call.name, self._actor_id), self._limits[call.stage].memory_gb)
 

@@ -58,9 +58,9 @@ def take_last_words(arrays: ArrayStore, staged_as: str) -> LastWords | None:
     return None if content is None else LastWords(**content)
 
 
-def progress_name(name: StagedName) -> str:
-    """Where a stage says which step it is in."""
-    return f"{PROGRESS}/{name}"
+def progress_name(name: StagedName, actor_id: str) -> str:
+    """Where an actor says which step of a stage it is in: two runs may have the same shape in hand."""
+    return f"{PROGRESS}/{name}.{actor_id}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,20 +75,20 @@ class Progress:
     refused: Mapping[str, Mapping[str, Any]]
 
 
-def note_progress(arrays: ArrayStore, name: StagedName, progress: Progress) -> None:
+def note_progress(arrays: ArrayStore, name: StagedName, actor_id: str, progress: Progress) -> None:
     """Says how far a stage has come."""
-    arrays.stage(progress_name(name), _staged(asdict(progress)))
+    arrays.stage(progress_name(name, actor_id), _staged(asdict(progress)))
 
 
-def read_progress(arrays: ArrayStore, name: StagedName) -> Progress | None:
+def read_progress(arrays: ArrayStore, name: StagedName, actor_id: str) -> Progress | None:
     """How far a stage has come; None if it has not begun a step."""
-    content = _read(arrays, progress_name(name))
+    content = _read(arrays, progress_name(name, actor_id))
     return None if content is None else Progress(**content)
 
 
-def take_progress(arrays: ArrayStore, name: StagedName) -> Progress | None:
+def take_progress(arrays: ArrayStore, name: StagedName, actor_id: str) -> Progress | None:
     """Reads and deletes it, when the process has died."""
-    content = _take(arrays, progress_name(name))
+    content = _take(arrays, progress_name(name, actor_id))
     return None if content is None else Progress(**content)
 
 

@@ -280,7 +280,9 @@ class ActorPool:
     def _is_in_another_step(self, running: _Running) -> bool:
         """Looks up which step a late call is in by now; whether that one is within its own deadline."""
         call = running.job.call
-        progress = read_progress(self._arrays, call.name) if self._rules.n_steps[call.stage] > 1 else None
+        progress = (
+            read_progress(self._arrays, call.name, running.worker.id) if self._rules.n_steps[call.stage] > 1 else None
+        )
         if progress is None:
             return False
         running.step_began = running.started + progress.began_s
@@ -317,7 +319,7 @@ class ActorPool:
     def _death(self, dead: _Dead, words: LastWords, is_lost: bool) -> Death:
         call = dead.job.call
         has_steps = self._rules.n_steps[call.stage] > 1
-        progress = take_progress(self._arrays, call.name) if has_steps else None
+        progress = take_progress(self._arrays, call.name, dead.worker.id) if has_steps else None
         step, refused = (None, {}) if progress is None else (progress.step, progress.refused)
         kind, why = dead.kind, dead.why
         if is_lost:

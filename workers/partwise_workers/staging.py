@@ -47,7 +47,7 @@ def _useless(
         shape = shapes.get(name.shape_id)
         if shape is None or shape.collection_id != collection.id:
             continue
-        key = name.key.partition(".")[0]  # last words have their actor behind it
+        key = name.key.partition(".")[0]  # last words and steps have their actor behind it
         runs = [done.get(name.shape_id), failed.get(name.shape_id) if name.stage != stage else None]
         is_on_record = any(run is not None and run.key == key for run in runs)
         if is_on_record or chain_keys(shape, upstream)[-1] != key:
