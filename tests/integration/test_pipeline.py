@@ -30,7 +30,7 @@ from partwise.workspace.status import CollectionStatus, collection_status
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers.model_store import ModelReference, read_model
 from partwise_workers.passes import evaluate, preprocess, refine
-from partwise_workers.training import _Trainer, labelled_shapes, recipe_of, train_collection
+from partwise_workers.training import _Trainer, recipe_of, train_collection, training_batches
 
 N_GOOD = 5
 N_FACES = 2000
@@ -228,8 +228,11 @@ def test_nothing_stays_staged(pipeline: Pipeline) -> None:
 
 
 def test_the_same_seed_gives_the_same_weights(pipeline: Pipeline) -> None:
-    shapes = list(labelled_shapes(pipeline.workspace, pipeline.collection))
     part_ids = tuple(part.id for part in pipeline.workspace.catalog.parts(pipeline.collection.id).parts)
     recipe = recipe_of(pipeline.workspace.config.train)
-    again = _Trainer(pipeline.workspace.array_url).fit(shapes, part_ids, recipe, None, n_threads=1)
+    trainer = _Trainer(pipeline.workspace.array_url)
+    with training_batches(pipeline.workspace, pipeline.collection) as batches:
+        for batch in batches:
+            trainer.add(batch.shapes)
+        again = trainer.fit(part_ids, recipe, None, n_threads=1)
     assert again.weights_key == pipeline.model.weights_key

@@ -15,6 +15,7 @@ import pytest
 import trimesh
 
 from partwise.errors import NotEnoughDataError, WorkerError
+from partwise.learning.recipe import Recipe
 from partwise.mesh import TriMesh
 from partwise.store.block_kinds import N_BINS, N_LIGHT_FIELD, REMESH
 from partwise.store.levels import remeshed_arrays
@@ -34,7 +35,14 @@ from partwise.workspace.workspace import Workspace, init_workspace, open_workspa
 from partwise_workers import training
 from partwise_workers.model_store import ModelReference, read_model
 from partwise_workers.plan import chain_keys, description_stages
-from partwise_workers.training import _Trainer, labelled_shapes, recipe_of, train_collection
+from partwise_workers.training import (
+    TrainingResult,
+    _Trainer,
+    labelled_shapes,
+    recipe_of,
+    train_collection,
+    training_batches,
+)
 
 N_SHAPES = 4
 BALL = trimesh.creation.icosphere(subdivisions=2)
@@ -203,18 +211,51 @@ def trained(local_ray: None, tmp_path_factory: pytest.TempPathFactory) -> Iterat
         yield Trained(workspace, collection, revisions, train(workspace, collection))
 
 
+def train_here(trained: Trained, recipe: Recipe) -> TrainingResult:
+    """In this process, on one thread."""
+    trainer = _Trainer(trained.workspace.array_url)
+    with training_batches(trained.workspace, trained.collection) as batches:
+        for batch in batches:
+            trainer.add(batch.shapes)
+        return trainer.fit((1, 2), recipe, None, n_threads=1)
+
+
 def test_the_same_seed_gives_the_same_weights_whatever_the_threads(trained: Trained) -> None:
-    shapes = list(labelled_shapes(trained.workspace, trained.collection))[:3]
     recipe = recipe_of(trained.workspace.config.train)
-    again = _Trainer(trained.workspace.array_url).fit(shapes, (1, 2), recipe, None, n_threads=1)
+    again = train_here(trained, recipe)
     assert again.weights_key == trained.model.weights_key
 
 
 def test_another_seed_gives_other_weights(trained: Trained) -> None:
-    shapes = list(labelled_shapes(trained.workspace, trained.collection))[:3]
-    recipe = replace(recipe_of(trained.workspace.config.train), seed=1)
-    again = _Trainer(trained.workspace.array_url).fit(shapes, (1, 2), recipe, None, n_threads=1)
+    again = train_here(trained, replace(recipe_of(trained.workspace.config.train), seed=1))
     assert again.weights_key != trained.model.weights_key
+
+
+def test_labels_come_in_batches_whose_blocks_are_gone_afterwards(trained: Trained, monkeypatch) -> None:
+    monkeypatch.setattr(training, "BATCH_SHAPES", 2)
+    arrays = trained.workspace.arrays
+    before = arrays.block_names()
+    with training_batches(trained.workspace, trained.collection) as batches:
+        found = list(batches)
+        assert [len(batch.shapes) for batch in found] == [2, 1]
+        assert [id_ for batch in found for id_ in batch.revision_ids] == trained.revisions
+        for batch in found:
+            assert batch.part_ids == {1, 2}
+            for shape in batch.shapes:
+                read = arrays.read(shape.labels.block_name, shape.labels.row, "labels")
+                np.testing.assert_array_equal(read, LABELS)
+    assert arrays.block_names() == before
+
+
+def test_large_labels_make_small_batches(trained: Trained, monkeypatch) -> None:
+    monkeypatch.setattr(training, "BATCH_BYTES", LABELS.nbytes)
+    with training_batches(trained.workspace, trained.collection) as batches:
+        assert [len(batch.shapes) for batch in batches] == [1, 1, 1]
+
+
+def test_training_leaves_nothing_but_the_model(trained: Trained) -> None:
+    visible = [block.name for block in trained.workspace.catalog.visible_blocks()]
+    assert sorted(visible) == list(trained.workspace.arrays.block_names())
 
 
 def test_shapes_without_a_labelled_face_are_left_out(trained: Trained) -> None:

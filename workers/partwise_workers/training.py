@@ -1,9 +1,15 @@
-"""Trains a model on every labelled shape of a collection, in one actor that has all cores, and puts it on record."""
+"""Trains a model on every labelled shape of a collection, in one actor that has all cores, and puts it on record.
+
+The actor does not open the catalog: the driver writes the labels, a batch of shapes at a time, into blocks that no row
+names, and tells the actor where they are. They are deleted afterwards; those of a run that was killed are orphans.
+"""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, overload
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from itertools import chain
+from typing import Any, TypeVar, overload
 
 import numpy as np
 import ray
@@ -18,6 +24,7 @@ from partwise.learning.recipe import Recipe
 from partwise.mesh import TriMesh
 from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.array_store import ArrayStore
+from partwise.store.blocks import BlockKind, Domain, Quantity
 from partwise.store.open import open_array_store
 from partwise.store.records import Collection, LabelRevision, Model, NewModel, ShapeState, StageRun
 from partwise.workspace.workspace import Workspace
@@ -27,19 +34,55 @@ from partwise_workers.plan import chain_keys, description_stages
 from partwise_workers.pool import first_line, raise_own
 from partwise_workers.tasks import BlockRow, block_row
 
+T = TypeVar("T")
+
 BRANCHES = ("shape_context", "spin_image")
 POLL_S = 0.5
 
+TRAINING_LABELS = BlockKind("training_labels", (Quantity("labels", Domain.FACE, "uint16"),))
+"""Part ids, 0 = unlabelled, as they were when training began."""
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TrainingShape:
-    """Where one labelled shape's arrays are, and its labels: (m,) uint16 part ids, 0 = unlabelled."""
+BATCH_SHAPES, BATCH_BYTES = 256, 32 * 1024 * 1024
+"""Labels of so many shapes, or so large, are in the driver's memory at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class LearnableShape:
+    """A shape with labels to learn from: their revision, and where its mesh and features are."""
 
     shape_id: int
     revision_id: int
     mesh: BlockRow
     features: BlockRow
-    labels: UInt16[np.ndarray, " m"]
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingShape:
+    """Where one labelled shape's arrays are; its labels in a block of `TRAINING_LABELS`."""
+
+    mesh: BlockRow
+    features: BlockRow
+    labels: BlockRow
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingBatch:
+    """Shapes whose labels are in one block. part_ids : those that are in use among them."""
+
+    shapes: tuple[TrainingShape, ...]
+    shape_ids: tuple[int, ...]
+    revision_ids: tuple[int, ...]
+    part_ids: frozenset[int]
+
+
+@dataclass(slots=True)
+class _Gathered:
+    shapes: list[LearnableShape] = field(default_factory=list)
+    labels: list[UInt16[np.ndarray, " m"]] = field(default_factory=list)
+
+    @property
+    def is_full(self) -> bool:
+        return len(self.shapes) >= BATCH_SHAPES or sum(each.nbytes for each in self.labels) >= BATCH_BYTES
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,10 +116,11 @@ class StoredShapes(Sequence[LabelledShape]):
             raise TypeError("stored shapes are read one at a time; index them with integers")
         shape = self._shapes[index]
         mesh = self._arrays.read_many(shape.mesh.block_name, shape.mesh.row, ("vertices", "faces"))
+        labels = self._arrays.read(shape.labels.block_name, shape.labels.row, "labels")
         names = [*BRANCHES, *(f"{branch}_scale" for branch in BRANCHES)]
         features = self._arrays.read_many(shape.features.block_name, shape.features.row, names)
         grids = {branch: CodedGrids(features[branch], features[f"{branch}_scale"]) for branch in BRANCHES}
-        return LabelledShape(TriMesh(mesh["vertices"], mesh["faces"]), grids, self._class_of[shape.labels])
+        return LabelledShape(TriMesh(mesh["vertices"], mesh["faces"]), grids, self._class_of[labels])
 
 
 class _Trainer:
@@ -85,10 +129,14 @@ class _Trainer:
     def __init__(self, array_url: str) -> None:
         self._array_url = array_url
         self._done = (0, 0)
+        self._shapes: list[TrainingShape] = []
+
+    def add(self, shapes: Sequence[TrainingShape]) -> None:
+        """More shapes to learn from."""
+        self._shapes += shapes
 
     def fit(
         self,
-        shapes: Sequence[TrainingShape],
         part_ids: tuple[int, ...],
         recipe: Recipe,
         refinement: RefinementParameters | None,
@@ -96,7 +144,7 @@ class _Trainer:
     ) -> TrainingResult:
         started = time.perf_counter()
         arrays = open_array_store(self._array_url)
-        stored = StoredShapes(arrays, shapes, part_ids)
+        stored = StoredShapes(arrays, self._shapes, part_ids)
         fitted = fit(stored, part_ids, recipe, refinement, self._note, n_threads)
         account: dict[str, Any] = {"recipe": asdict(recipe), "train_s": round(time.perf_counter() - started, 3)}
         if fitted.tuning is not None:
@@ -127,22 +175,77 @@ def train_collection(workspace: Workspace, collection: Collection, on_progress: 
     StoreError : a store is full or cannot be reached.
     WorkerError : Ray cannot be started, or the training's process died.
     """
-    shapes = [shape for shape in labelled_shapes(workspace, collection) if shape.labels.any()]
-    part_ids = tuple(sorted({int(part) for shape in shapes for part in np.unique(shape.labels) if part}))
-    if not part_ids:
-        raise _nothing_to_learn(workspace, collection)
+    with training_batches(workspace, collection) as batches:
+        first = next(batches, None)
+        if first is None:
+            raise _nothing_to_learn(workspace, collection)
+        with connected():
+            result, revision_ids = _train(workspace, chain([first], batches), on_progress)
+    return workspace.catalog.save_model(NewModel(collection.id, result.recipe, result.weights_key, revision_ids))
+
+
+def _train(
+    workspace: Workspace, batches: Iterable[TrainingBatch], on_progress: Callable[[int, int], None]
+) -> tuple[TrainingResult, tuple[int, ...]]:
+    """The model, and the revisions that it learned from."""
     config = workspace.config.train
     refinement = workspace.config.refine if config.tune_smoothness else None
-    with connected():
-        n_threads = cores().largest_node
-        actor: Any = Trainer.options(num_cpus=n_threads, max_concurrency=2).remote(workspace.array_url)
-        try:
-            pending = actor.fit.remote(shapes, part_ids, recipe_of(config), refinement, n_threads)
-            result = _wait(actor, pending, on_progress)
-        finally:
-            ray.kill(actor)
-    revision_ids = tuple(shape.revision_id for shape in shapes)
-    return workspace.catalog.save_model(NewModel(collection.id, result.recipe, result.weights_key, revision_ids))
+    n_threads = cores().largest_node
+    actor: Any = Trainer.options(num_cpus=n_threads, max_concurrency=2).remote(workspace.array_url)
+    part_ids: set[int] = set()
+    revision_ids: list[int] = []
+    try:
+        for batch in batches:
+            _result(actor.add.remote(batch.shapes))
+            part_ids |= batch.part_ids
+            revision_ids += batch.revision_ids
+        pending = actor.fit.remote(tuple(sorted(part_ids)), recipe_of(config), refinement, n_threads)
+        return _wait(actor, pending, on_progress), tuple(revision_ids)
+    finally:
+        ray.kill(actor)
+
+
+@contextmanager
+def training_batches(workspace: Workspace, collection: Collection) -> Iterator[Iterator[TrainingBatch]]:
+    """The shapes that a model can learn from, batch by batch, by id; their labels are there for the time of the block.
+
+    Shapes whose faces are all unlabelled are left out.
+    """
+    written: list[str] = []
+    try:
+        yield _batches(workspace, collection, written)
+    finally:
+        for name in written:
+            workspace.arrays.delete_block(name)
+
+
+def _batches(workspace: Workspace, collection: Collection, written: list[str]) -> Iterator[TrainingBatch]:
+    """Adds the name of each block that it writes to `written`."""
+    gathered = _Gathered()
+    for shape in labelled_shapes(workspace, collection):
+        labels = workspace.catalog.labels(shape.revision_id)
+        if labels.any():
+            gathered.shapes.append(shape)
+            gathered.labels.append(labels)
+        if gathered.is_full:
+            yield _batch(workspace, gathered, written)
+            gathered = _Gathered()
+    if gathered.shapes:
+        yield _batch(workspace, gathered, written)
+
+
+def _batch(workspace: Workspace, gathered: _Gathered, written: list[str]) -> TrainingBatch:
+    block = workspace.arrays.write_block(TRAINING_LABELS, [{"labels": labels} for labels in gathered.labels])
+    written.append(block.name)
+    return TrainingBatch(
+        tuple(
+            TrainingShape(shape.mesh, shape.features, BlockRow(block.name, row))
+            for row, shape in enumerate(gathered.shapes)
+        ),
+        tuple(shape.shape_id for shape in gathered.shapes),
+        tuple(shape.revision_id for shape in gathered.shapes),
+        frozenset(int(part) for labels in gathered.labels for part in np.unique(labels) if part),
+    )
 
 
 def _nothing_to_learn(workspace: Workspace, collection: Collection) -> NotEnoughDataError:
@@ -169,21 +272,25 @@ def recipe_of(config: TrainConfig) -> Recipe:
 def _wait(
     actor: Any, pending: ray.ObjectRef[TrainingResult], on_progress: Callable[[int, int], None]
 ) -> TrainingResult:
+    while not ray.wait([pending], timeout=POLL_S)[0]:
+        done, n_total = _result(actor.progress.remote())
+        if n_total:
+            on_progress(done, n_total)
+    return _result(pending)
+
+
+def _result(reference: "ray.ObjectRef[T]") -> T:
+    """What the actor answers; its own errors, and WorkerError where it died."""
     try:
-        while not ray.wait([pending], timeout=POLL_S)[0]:
-            done, n_total = ray.get(actor.progress.remote())
-            if n_total:
-                on_progress(done, n_total)
-        result: TrainingResult = ray.get(pending)
+        return ray.get(reference)
     except RayError as error:
         raise_own(error)
         raise WorkerError(
             f"training must run to its end but its process died: {first_line(error)}; free some memory, train again"
         ) from error
-    return result
 
 
-def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[TrainingShape]:
+def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[LearnableShape]:
     """Every shape whose newest human or imported labels can be learned from, by id.
 
     They must belong to the mesh that is described, and to the present schema version (older ones wait for someone to
@@ -200,7 +307,7 @@ def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[Tr
             shape_id = revision.shape_id
             places = _places([each.get(shape_id) for each in runs], chain_keys(shapes[shape_id], stages)[1:], revision)
             if places is not None and revision.schema_version == collection.schema_version:
-                yield TrainingShape(shape_id, revision.id, *places, catalog.labels(revision.id))
+                yield LearnableShape(shape_id, revision.id, *places)
         after = ids[-1]
 
 

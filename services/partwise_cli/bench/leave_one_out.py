@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from partwise.learning.fitting import Fitted, LabelledShape, fit
 from partwise.learning.recipe import Recipe
 from partwise.metrics.accuracy import accuracy, accuracy_by_area
 from partwise.segmentation.model_refinement import refine
-from partwise.store.records import RevisionKind
+from partwise.store.records import Collection, RevisionKind
 from partwise.workspace.ingest import ingest_folder, mesh_files
 from partwise.workspace.labelling import PSB_ENDING, import_labels
 from partwise.workspace.progress import OnRunProgress
@@ -25,7 +25,7 @@ from partwise.workspace.settings import change_settings
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers.cluster import connected
 from partwise_workers.passes import preprocess
-from partwise_workers.training import StoredShapes, labelled_shapes
+from partwise_workers.training import StoredShapes, TrainingShape, labelled_shapes, training_batches
 
 OnTraining = Callable[[int, int, str], None]
 
@@ -122,12 +122,27 @@ def leave_one_out(
 ) -> Iterator[HeldOut]:
     """Holds out `limit` evenly spaced shapes, one after the other; all of them without a limit."""
     collection = workspace.catalog.get_collection(collection_name)
-    labelled = list(labelled_shapes(workspace, collection))
+    with training_batches(workspace, collection) as batches:
+        labelled = {
+            shape_id: shape for batch in batches for shape_id, shape in zip(batch.shape_ids, batch.shapes, strict=True)
+        }
+        yield from _held_out_in_turn(workspace, collection, labelled, recipe, limit, on_training)
+
+
+def _held_out_in_turn(
+    workspace: Workspace,
+    collection: Collection,
+    labelled: Mapping[int, TrainingShape],
+    recipe: Recipe,
+    limit: int | None,
+    on_training: OnTraining,
+) -> Iterator[HeldOut]:
     part_ids = workspace.catalog.parts(collection.id).ids
-    shapes = workspace.catalog.shapes_by_id([item.shape_id for item in labelled])
-    for held_out in evenly_spaced(len(labelled), limit):
-        name = shapes[labelled[held_out].shape_id].source_key
-        others = [item for item in labelled if item is not labelled[held_out]]
+    shapes = workspace.catalog.shapes_by_id(labelled)
+    ids = list(labelled)
+    for held_out in (ids[position] for position in evenly_spaced(len(ids), limit)):
+        name = shapes[held_out].source_key
+        others = [shape for shape_id, shape in labelled.items() if shape_id != held_out]
         started = time.perf_counter()
         fitted = fit(
             StoredShapes(workspace.arrays, others, part_ids),
