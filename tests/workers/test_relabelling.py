@@ -1,11 +1,17 @@
 """Labels of many shapes are moved by Ray tasks; a shape that fails costs only itself."""
 
+import os
+import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import ray
+from ray import cloudpickle
 
+from partwise.errors import StoreError
 from partwise.mesh import TriMesh
 from partwise.store.meshes import kept_mesh_key
 from partwise.store.records import Collection, RevisionKind
@@ -19,8 +25,15 @@ from partwise_workers import passes
 from partwise_workers import relabelling as module
 from partwise_workers.relabelling import move_labels
 
+cloudpickle.register_pickle_by_value(sys.modules[__name__])
+
 FINE, COARSE = ball(3), ball(2)
 N_SHAPES = 4
+
+
+@ray.remote(max_retries=0)
+def dies(*_: object) -> None:
+    os._exit(1)
 
 
 def scaled(mesh: TriMesh, number: int) -> TriMesh:
@@ -63,6 +76,48 @@ def test_a_shape_whose_mesh_is_damaged_costs_only_itself(local_ray, remeshed, mo
     (failure,) = workspace.catalog.failures(collection.id)
     assert (failure.source_key, failure.run.stage) == ("0.off", RELABEL)
     assert "safetensors" in str(failure.run.reason)
+
+
+def test_a_store_that_is_down_ends_the_moves_and_blames_no_shape(
+    local_ray, remeshed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace, collection, _ = remeshed
+    monkeypatch.setattr(module, "FEW", 0)
+    workspace.arrays.put_bytes(kept_mesh_key(FINE.content_hash()), b"damaged")
+
+    def refuse(*_: object) -> None:
+        raise StoreError("the array store refused; is it reachable?")
+
+    monkeypatch.setattr(workspace.arrays, "stage", refuse)
+    with pytest.raises(StoreError, match="is it reachable"):
+        move_labels(workspace, collection, lambda _: None)
+    assert list(workspace.catalog.failures(collection.id)) == []
+
+
+def test_a_move_past_the_deadline_is_given_up_and_named(local_ray, remeshed, monkeypatch: pytest.MonkeyPatch) -> None:
+    workspace, collection, _ = remeshed
+    monkeypatch.setattr(module, "FEW", 0)
+    monkeypatch.setattr(module, "POLL_S", 0.01)
+    workers = workspace.config.workers
+    limits = replace(workers.limits, remesh=replace(workers.limits.remesh, deadline_s=1e-3))
+    config = replace(workspace.config, workers=replace(workers, limits=limits))
+    report = move_labels(replace(workspace, config=config), collection, lambda _: None)
+    assert report.n_failed >= 1
+    assert report.n_moved + report.n_failed == N_SHAPES
+    reasons = [str(failure.run.reason) for failure in workspace.catalog.failures(collection.id)]
+    assert len(reasons) == report.n_failed
+    assert all("raise deadline_s under [workers.limits.remesh]" in reason for reason in reasons)
+
+
+def test_a_move_whose_process_dies_costs_only_itself_and_says_what_to_do(
+    local_ray, remeshed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace, collection, _ = remeshed
+    monkeypatch.setattr(module, "FEW", 0)
+    monkeypatch.setattr(module, "_compute", dies)
+    assert move_labels(workspace, collection, lambda _: None).n_failed == N_SHAPES
+    failures = workspace.catalog.failures(collection.id)
+    assert all("then preprocess again" in str(failure.run.reason) for failure in failures)
 
 
 def test_few_moves_need_no_ray(remeshed, monkeypatch: pytest.MonkeyPatch) -> None:

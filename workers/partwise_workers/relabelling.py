@@ -3,14 +3,16 @@
 A run that was killed leaves nothing half-done: the next one finds the moves that are still missing.
 """
 
+import time
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import ray
 from jaxtyping import UInt16
-from ray.exceptions import RayError
+from ray.exceptions import RayError, RayTaskError
 
-from partwise.errors import PartwiseError
+from partwise.errors import PartwiseError, StoreError
 from partwise.remesh.moved_labels import MovedLabels
 from partwise.store.open import open_array_store
 from partwise.store.records import Collection, Mesh
@@ -24,6 +26,7 @@ from partwise.workspace.relabel import (
     move_here,
     pending_moves,
     record_failed_move,
+    require_store,
     waits_for_review,
 )
 from partwise.workspace.workspace import Workspace
@@ -33,9 +36,17 @@ from partwise_workers.pool import first_line, raise_own
 FEW = 8
 """So many moves are made in this process: starting Ray would take longer."""
 
-IN_FLIGHT_PER_CORE = 2
 MAX_RETRIES = 1
 """Of a move whose process died."""
+
+POLL_S = 1.0
+"""How often deadlines are looked at while no move ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class _InFlight:
+    move: PendingMove
+    since: float
 
 
 def move_labels(workspace: Workspace, collection: Collection, on_progress: OnRunProgress) -> MoveReport:
@@ -57,24 +68,28 @@ def move_labels(workspace: Workspace, collection: Collection, on_progress: OnRun
 
 
 class _Mover:
-    """Keeps a bounded number of tasks in flight and commits what they return."""
+    """Keeps one task a core in flight and commits what they return.
+
+    A move has the time that remeshing has: it searches the same meshes. Its clock runs from when it is handed out.
+    """
 
     def __init__(self, workspace: Workspace, on_progress: OnRunProgress, n_total: int) -> None:
         self._workspace = workspace
         self._on_progress = on_progress
         self._n_total = n_total
-        self._in_flight: dict[ray.ObjectRef[MovedLabels], PendingMove] = {}
+        self._in_flight: dict[ray.ObjectRef[MovedLabels], _InFlight] = {}
+        self._deadline_s = workspace.config.workers.limits.remesh.deadline_s
         self._n_moved = self._n_in_review = self._n_failed = 0
 
     def run(self, collection: Collection) -> MoveReport:
-        n_slots = IN_FLIGHT_PER_CORE * n_cores()
+        n_slots = n_cores()
         try:
             for move in pending_moves(self._workspace, collection):
                 self._submit(move)
                 while len(self._in_flight) >= n_slots:
-                    self._finish_one()
+                    self._wait()
             while self._in_flight:
-                self._finish_one()
+                self._wait()
         finally:
             for pending in self._in_flight:
                 ray.cancel(pending, force=True)
@@ -84,18 +99,31 @@ class _Mover:
         try:
             labels = self._workspace.catalog.labels(move.source.id)
         except PartwiseError as error:
-            self._fail(move, error)
+            self._blame(move, error)
             return
         task: Any = _compute
-        self._in_flight[task.remote(self._workspace.array_url, move.old_mesh, move.new_mesh, labels)] = move
+        reference = task.remote(self._workspace.array_url, move.old_mesh, move.new_mesh, labels)
+        self._in_flight[reference] = _InFlight(move, time.monotonic())
 
-    def _finish_one(self) -> None:
-        (done,), _ = ray.wait(list(self._in_flight), num_returns=1)
-        move = self._in_flight.pop(done)
+    def _wait(self) -> None:
+        ready, _ = ray.wait(list(self._in_flight), num_returns=1, timeout=POLL_S)
+        for reference in ready:
+            self._finish(reference)
+        now = time.monotonic()
+        for reference in [each for each, flight in self._in_flight.items() if now - flight.since > self._deadline_s]:
+            ray.cancel(reference, force=True)
+            self._fail(
+                self._in_flight.pop(reference).move,
+                f"its labels took longer to move than deadline_s = {self._deadline_s:g}; raise deadline_s under "
+                "[workers.limits.remesh], or simplify its file",
+            )
+
+    def _finish(self, done: "ray.ObjectRef[MovedLabels]") -> None:
+        move = self._in_flight.pop(done).move
         try:
             moved = _result(done)
         except (PartwiseError, RayError) as error:
-            self._fail(move, error)
+            self._blame(move, error)
             return
         committed = commit_move(self._workspace, move, moved)
         if committed is not None:
@@ -103,8 +131,16 @@ class _Mover:
             self._n_in_review += waits_for_review(committed)
         self._tell()
 
-    def _fail(self, move: PendingMove, error: Exception) -> None:
-        record_failed_move(self._workspace, move, first_line(error))
+    def _blame(self, move: PendingMove, error: Exception) -> None:
+        """The shape fails for it, unless it is the store that does, which raises StoreError."""
+        if isinstance(error, StoreError):
+            require_store(self._workspace.arrays)
+        has_died = isinstance(error, RayError) and not isinstance(error, RayTaskError)
+        remedy = "; free some memory or simplify its file, then preprocess again" if has_died else ""
+        self._fail(move, f"{first_line(error)}{remedy}")
+
+    def _fail(self, move: PendingMove, reason: str) -> None:
+        record_failed_move(self._workspace, move, reason)
         self._n_failed += 1
         self._tell()
 

@@ -6,13 +6,14 @@ the parent. Labels are moved from what a person made or accepted, never from wha
 errors do not add up.
 """
 
+import uuid
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import UInt16
 
-from partwise.errors import ConflictError, PartwiseError
+from partwise.errors import ConflictError, PartwiseError, StoreError
 from partwise.remesh.moved_labels import MovedLabels, moved_labels
 from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import SHOWN_KINDS, LabelCatalog
@@ -145,6 +146,8 @@ def move_here(workspace: Workspace, collection: Collection, on_progress: OnRunPr
             labels = workspace.catalog.labels(move.source.id)
             moved = compute_move(workspace.arrays, move.old_mesh, move.new_mesh, labels)
         except PartwiseError as error:
+            if isinstance(error, StoreError):
+                require_store(workspace.arrays)
             record_failed_move(workspace, move, str(error))
             n_failed += 1
             continue
@@ -155,6 +158,13 @@ def move_here(workspace: Workspace, collection: Collection, on_progress: OnRunPr
     if n_total:
         on_progress(RunProgress(n_moved, n_failed, n_total))
     return MoveReport(n_moved, n_in_review, n_failed)
+
+
+def require_store(arrays: ArrayStore) -> None:
+    """Tells a store that is down, which raises StoreError here, from one damaged object."""
+    probe = f"probe/{uuid.uuid4().hex}"
+    arrays.stage(probe, {"probe": np.zeros(1, dtype=np.uint8)})
+    arrays.delete_staged(probe)
 
 
 def waits_for_review(moved: LabelRevision) -> bool:

@@ -6,6 +6,7 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
+from partwise.errors import StoreError
 from partwise.mesh import TriMesh
 from partwise.store.meshes import kept_mesh_key
 from partwise.store.records import Collection, LabelRevision, RevisionKind, Shape, ShapeState
@@ -240,6 +241,17 @@ def test_a_shape_that_cannot_be_moved_is_named_and_tried_again(
     assert "safetensors" in str(failure.run.reason)
     labelled.workspace.arrays.put_bytes(key, kept)
     assert labelled.move() == MoveReport(1, 0, 0)
+    assert labelled.workspace.catalog.failures(labelled.collection.id) == []
+
+
+def test_a_store_that_is_down_is_no_shapes_fault(labelled: Labelled, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise StoreError("the array store refused; is it reachable?")
+
+    for name in ("get_bytes", "read_many", "stage"):
+        monkeypatch.setattr(labelled.workspace.arrays, name, refuse)
+    with pytest.raises(StoreError, match="is it reachable"):
+        labelled.move()
     assert labelled.workspace.catalog.failures(labelled.collection.id) == []
 
 
