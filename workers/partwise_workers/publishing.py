@@ -191,8 +191,8 @@ class Publisher:
         logger.warning("the packer died", extra={"stage": packing.stage, "why": first_line(error)})
         if packing.attempt >= MAX_PACK_ATTEMPTS:
             raise WorkerError(
-                f"a block of {len(packing.ready)} shapes must be written but its packer died {packing.attempt} times: "
-                f"{first_line(error)}; results are kept: free some memory or lower [workers] block_shapes, run again"
+                f"a block of {len(packing.ready):,} shapes must be written but its packer died {packing.attempt} "
+                f"times: {first_line(error)}; results are kept: free some memory or lower [workers] block_shapes, run again"
             ) from error
         require_living_node()
         if self._packer is packing.packer:

@@ -1,8 +1,11 @@
 """`gc`: sweeps what crashed runs left behind and what newer results have replaced."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 
+from partwise.errors import ConflictError
+from partwise.store.records import Block
 from partwise.workspace.workspace import Workspace
 
 PAGE = 1000
@@ -28,16 +31,29 @@ def collect_garbage(workspace: Workspace, orphans_older_than: timedelta) -> Garb
     """
     n_unused = n_bytes = 0
     while unused := workspace.catalog.unused_blocks(limit=PAGE):
-        workspace.catalog.delete_blocks([block.name for block in unused])
-        for block in unused:
+        deleted = _delete_rows(workspace, unused)
+        for block in deleted:
             workspace.arrays.delete_block(block.name)
-        n_unused += len(unused)
-        n_bytes += sum(block.n_bytes for block in unused)
+        n_unused += len(deleted)
+        n_bytes += sum(block.n_bytes for block in deleted)
+        if not deleted:
+            break
     orphans = workspace.arrays.orphans(_visible_names(workspace), orphans_older_than)
     for name in orphans:
         workspace.arrays.delete_block(name)
     n_unfinished = workspace.arrays.sweep_unfinished(orphans_older_than)
     return GarbageReport(n_unused, len(orphans), n_unfinished, n_bytes)
+
+
+def _delete_rows(workspace: Workspace, blocks: Sequence[Block]) -> Sequence[Block]:
+    """Deletes them from the catalog, but for those that have come into use since they were listed; returns which."""
+    try:
+        workspace.catalog.delete_blocks([block.name for block in blocks])
+    except ConflictError:
+        if len(blocks) == 1:
+            return []
+        return [each for block in blocks for each in _delete_rows(workspace, [block])]
+    return blocks
 
 
 def _visible_names(workspace: Workspace) -> set[str]:

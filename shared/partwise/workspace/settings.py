@@ -38,8 +38,8 @@ class CollectionSettings:
                 )
         if not MIN_WORKING_FACES <= self.working_faces <= MAX_WORKING_FACES:
             raise ParameterError(
-                f"working_faces must be {MIN_WORKING_FACES:,} to {MAX_WORKING_FACES:,} but is {self.working_faces:,}; "
-                "10000 is usual"
+                f"faces of working meshes must be {MIN_WORKING_FACES:,} to {MAX_WORKING_FACES:,} but are "
+                f"{self.working_faces:,}; 10,000 are usual"
             )
 
 

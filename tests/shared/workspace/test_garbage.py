@@ -74,6 +74,18 @@ def test_what_killed_writes_left_is_swept_once_it_is_old(filled) -> None:
     assert not partial.exists()
 
 
+def test_a_block_that_comes_into_use_meanwhile_is_left_alone(filled, monkeypatch: pytest.MonkeyPatch) -> None:
+    filled.preprocessed()
+    ids, rng, catalog = list(filled.ids.values()), np.random.default_rng(0), filled.workspace.catalog
+    names = [publish_features(filled.workspace, ids, rng, key=f"describe-{version}") for version in range(2)]
+    blocks = [catalog.block(name) for name in names]
+    lists = [blocks, blocks[1:]]  # as if the second had been unused when they were listed
+    monkeypatch.setattr(type(catalog), "unused_blocks", lambda *_, **__: lists.pop(0))
+    assert collect_garbage(filled.workspace, timedelta(hours=1)) == GarbageReport(1, 0, 0, blocks[0].n_bytes)
+    left = filled.workspace.arrays.block_names()
+    assert (names[0] in left, names[1] in left) == (False, True)
+
+
 def test_sources_stay(filled) -> None:
     collect_garbage(filled.workspace, timedelta(seconds=-1))
     assert len(filled.workspace.arrays.list("sources")) == 3

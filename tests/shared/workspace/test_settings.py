@@ -30,8 +30,8 @@ def test_a_change_is_there_for_the_next_reader(workspace, collection) -> None:
     [
         ({"up": "w"}, ("up must be one of x, y, z but is 'w'",)),
         ({"remesh": "always"}, ("remesh must be one of auto, never but is 'always'",)),
-        ({"working_faces": 99}, ("working_faces must be 100 to 1,000,000 but is 99",)),
-        ({"working_faces": 1_000_001}, ("working_faces must be 100 to 1,000,000 but is 1,000,001",)),
+        ({"working_faces": 99}, ("faces of working meshes must be 100 to 1,000,000 but are 99;",)),
+        ({"working_faces": 1_000_001}, ("faces of working meshes must be 100 to 1,000,000 but are 1,000,001",)),
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_changed(workspace, collection, changes, words) -> None:
