@@ -192,7 +192,8 @@ class Publisher:
         if packing.attempt >= MAX_PACK_ATTEMPTS:
             raise WorkerError(
                 f"a block of {len(packing.ready):,} shapes must be written but its packer died {packing.attempt} "
-                f"times: {first_line(error)}; results are kept: free some memory or lower [workers] block_shapes, run again"
+                f"times: {first_line(error)}; results are kept: free some memory or lower [workers] block_shapes, "
+                "run again"
             ) from error
         require_living_node()
         if self._packer is packing.packer:

@@ -112,3 +112,6 @@ def export(
     without = f"; {counted(report.n_without, 'shape')} without {segmentation.value} labels" if report.n_without else ""
     typer.echo(f"{segmentation.value} labels of {counted(report.n_written, 'shape')} written{without}")
     typer.echo(f"manifest: {report.manifest}")
+    warning_lines(report.refused)
+    if report.refused:
+        raise typer.Exit(SOME_FAILED)

@@ -4,14 +4,14 @@ import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path, PurePosixPath
 
 import numpy as np
 from jaxtyping import Int
 
 from partwise import __version__
-from partwise.errors import ConflictError, NotFoundError, StoreError
+from partwise.errors import ConflictError, NotFoundError, PartwiseError, StoreError
 from partwise.exchange.coco import CocoDataset, CocoShape, write_coco
 from partwise.exchange.export_manifest import (
     ExportManifest,
@@ -20,13 +20,15 @@ from partwise.exchange.export_manifest import (
     file_sha256,
     write_manifest,
 )
+from partwise.exchange.parts import PartTable
 from partwise.store.records import Collection, MeshRole
 from partwise.workspace.choices import ExportFormat as ExportFormat
 from partwise.workspace.choices import PointSampling, Segmentation
 from partwise.workspace.export_files import COCO_FILE, ENDINGS, coco_of, file_labels, part_table, write_shape
-from partwise.workspace.placed_labels import PlacedLabels, place
+from partwise.workspace.placed_labels import PlacedLabels, Unplaced, place
 from partwise.workspace.progress import OnRunProgress, RunProgress
-from partwise.workspace.shapes import pages_of_shapes
+from partwise.workspace.relabel import require_store
+from partwise.workspace.shapes import load_mesh, pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
 MANIFEST = "manifest.json"
@@ -35,11 +37,15 @@ _DEFAULT_SAMPLING = PointSampling()
 
 @dataclass(frozen=True, slots=True)
 class ExportReport:
-    """How many shapes were written, and how many have no such labels."""
+    """How many shapes were written, and how many have no such labels.
+
+    refused : shapes whose mesh cannot be read, each with why, in one line.
+    """
 
     n_written: int
     n_without: int
     manifest: Path
+    refused: tuple[str, ...] = ()
 
 
 def export_labels(
@@ -64,43 +70,111 @@ def export_labels(
     Raises
     ------
     NotFoundError : no shape has such labels.
-    StoreError : a store cannot be read, or the files cannot be written.
+    StoreError : a store cannot be reached, no shape's mesh can be read, or the files cannot be written.
     """
     schema = workspace.catalog.parts(collection.id)
     parts = part_table(schema)
     with _staging_folder(out) as staging:
-        entries: list[ManifestShape] = []
-        coco_shapes: list[CocoShape] = []
-        taken: set[str] = set()
-        n_shapes, n_seen = sum(workspace.catalog.state_counts(collection.id).values()), 0
-        for page in pages_of_shapes(workspace.catalog, collection.id):
-            for placed in place(workspace, page, segmentation, role):
-                files: tuple[ManifestFile, ...] = ()
-                if file_format is ExportFormat.COCO:
-                    coco_shapes.append(coco_of(workspace, placed, parts))
-                else:
-                    relative = _free_name(placed.shape.source_key, ENDINGS[file_format], taken)
-                    taken.add(relative)
-                    write_shape(workspace, placed, parts, file_format, str(staging / relative), sampling)
-                    files = (ManifestFile(relative, file_sha256(staging / relative)),)
-                entries.append(_entry(placed, role, files))
-                on_progress(RunProgress(n_seen + page.index(placed.shape) + 1, 0, n_shapes))
-            n_seen += len(page)
-        if not entries:
-            raise NotFoundError(
-                f"export needs {segmentation} labels but no shape of {collection.name!r} has any; see `partwise status`"
-            )
-        if coco_shapes:
-            write_coco(staging / COCO_FILE, CocoDataset(parts, tuple(coco_shapes)))
-            taken.add(COCO_FILE)
-        common = tuple(ManifestFile(COCO_FILE, file_sha256(staging / COCO_FILE)) for _ in coco_shapes[:1])
+        writer = _Writer(workspace, parts, file_format, role, sampling, staging)
+        n_shapes = _write_all(writer, collection, segmentation, on_progress)
+        if not writer.entries:
+            raise _nothing_written(collection, segmentation, writer.refused)
+        coco_files = writer.finish()
         manifest = ExportManifest(
-            __version__, collection.name, schema.version, parts.parts, segmentation.value, tuple(entries), common,
+            __version__,
+            collection.name,
+            schema.version,
+            parts.parts,
+            segmentation.value,
+            tuple(writer.entries),
+            coco_files,
             {"format": file_format.value, "on": role.value, **_sampling(file_format, sampling)},
-        )  # fmt: skip
+        )
         write_manifest(staging / MANIFEST, manifest)
-        _move([*sorted(taken), MANIFEST], staging, out)
-    return ExportReport(len(entries), n_shapes - len(entries), out / MANIFEST)
+        _move([*sorted(writer.taken), MANIFEST], staging, out)
+    n_written, refused = len(writer.entries), tuple(writer.refused)
+    return ExportReport(n_written, n_shapes - n_written - len(refused), out / MANIFEST, refused)
+
+
+@dataclass(slots=True)
+class _Writer:
+    """Writes shapes into the folder `staging`, or gathers them where all are one file; keeps what to say of them."""
+
+    workspace: Workspace
+    parts: PartTable
+    file_format: ExportFormat
+    role: MeshRole
+    sampling: PointSampling
+    staging: Path
+    entries: list[ManifestShape] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
+    coco_shapes: list[CocoShape] = field(default_factory=list)
+    taken: set[str] = field(default_factory=set)
+
+    def add(self, placed: PlacedLabels | Unplaced) -> None:
+        """A shape whose mesh cannot be read is named among `refused` and costs only itself."""
+        if isinstance(placed, Unplaced):
+            self.refused.append(f"{placed.shape.source_key}: {placed.reason}")
+            return
+        try:
+            files = self._files(placed)
+        except (StoreError, NotFoundError) as error:
+            require_store(self.workspace.arrays)
+            if self._is_readable(placed):
+                raise
+            self.refused.append(f"{placed.shape.source_key}: {error}")
+            return
+        self.entries.append(_entry(placed, self.role, files))
+
+    def finish(self) -> tuple[ManifestFile, ...]:
+        """Writes the one file of all shapes, if the format has one."""
+        if not self.coco_shapes:
+            return ()
+        write_coco(self.staging / COCO_FILE, CocoDataset(self.parts, tuple(self.coco_shapes)))
+        self.taken.add(COCO_FILE)
+        return (ManifestFile(COCO_FILE, file_sha256(self.staging / COCO_FILE)),)
+
+    def _files(self, placed: PlacedLabels) -> tuple[ManifestFile, ...]:
+        if self.file_format is ExportFormat.COCO:
+            self.coco_shapes.append(coco_of(self.workspace, placed, self.parts))
+            return ()
+        name = _free_name(placed.shape.source_key, ENDINGS[self.file_format], self.taken)
+        path = self.staging / name
+        write_shape(self.workspace, placed, self.parts, self.file_format, str(path), self.sampling)
+        self.taken.add(name)
+        return (ManifestFile(name, file_sha256(path)),)
+
+    def _is_readable(self, placed: PlacedLabels) -> bool:
+        """Whether it was not the mesh, but the file that could not be written."""
+        try:
+            load_mesh(self.workspace, placed.mesh)
+        except PartwiseError:
+            return False
+        return True
+
+
+def _write_all(writer: _Writer, collection: Collection, segmentation: Segmentation, on_progress: OnRunProgress) -> int:
+    """Writes every shape that has such labels; returns how many shapes there are."""
+    catalog, n_seen = writer.workspace.catalog, 0
+    n_shapes = sum(catalog.state_counts(collection.id).values())
+    for page in pages_of_shapes(catalog, collection.id):
+        for placed in place(writer.workspace, page, segmentation, writer.role):
+            writer.add(placed)
+            n_refused = len(writer.refused)
+            on_progress(RunProgress(n_seen + page.index(placed.shape) + 1 - n_refused, n_refused, n_shapes))
+        n_seen += len(page)
+    return n_shapes
+
+
+def _nothing_written(collection: Collection, segmentation: Segmentation, refused: list[str]) -> PartwiseError:
+    if refused:
+        return StoreError(
+            f"export needs meshes that can be read but that of {refused[0]}; so it is with all {len(refused):,} shapes "
+            f"of {collection.name!r} that have {segmentation} labels; run `partwise retry --lost`, then preprocess"
+        )
+    return NotFoundError(
+        f"export needs {segmentation} labels but no shape of {collection.name!r} has any; see `partwise status`"
+    )
 
 
 def _sampling(file_format: ExportFormat, sampling: PointSampling) -> dict[str, int]:

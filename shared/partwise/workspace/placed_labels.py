@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import UInt16
 
+from partwise.errors import PartwiseError, StoreError
+from partwise.remesh.moved_labels import MovedLabels
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Mesh, MeshRole, Shape
-from partwise.workspace.relabel import compute_move, with_origins
+from partwise.workspace.relabel import compute_move, require_store, with_origins
 from partwise.workspace.segmentations import Segmentation, segment
 from partwise.workspace.workspace import Workspace
 
@@ -35,13 +37,25 @@ class PlacedLabels:
     is_in_review: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Unplaced:
+    """A shape whose labels could not be brought to the mesh where they are wanted, and why, in one line."""
+
+    shape: Shape
+    reason: str
+
+
 def place(
     workspace: Workspace, shapes: Sequence[Shape], segmentation: Segmentation, role: MeshRole
-) -> Iterator[PlacedLabels]:
+) -> Iterator[PlacedLabels | Unplaced]:
     """Those of the shapes that have such labels and such a mesh, in their order.
 
     On the original, labels that were given to its very faces come back as they are, as long as nobody has changed them
     since; others are mapped back. Labels that still wait to be moved to the working mesh are left out there.
+
+    Raises
+    ------
+    StoreError : a store cannot be reached. A mesh that cannot be read costs only its shape.
     """
     if segmentation is Segmentation.CONFIRMED:
         yield from _confirmed(workspace, shapes, role)
@@ -49,7 +63,7 @@ def place(
         yield from _from_models(workspace, shapes, segmentation, role)
 
 
-def _confirmed(workspace: Workspace, shapes: Sequence[Shape], role: MeshRole) -> Iterator[PlacedLabels]:
+def _confirmed(workspace: Workspace, shapes: Sequence[Shape], role: MeshRole) -> Iterator[PlacedLabels | Unplaced]:
     catalog = workspace.catalog
     meshes = _meshes(workspace, shapes, role)
     heads = catalog.head_revisions([shape.id for shape in shapes], SHOWN_KINDS)
@@ -63,7 +77,10 @@ def _confirmed(workspace: Workspace, shapes: Sequence[Shape], role: MeshRole) ->
             labels, agreement, chain = catalog.labels(chain[there].id), None, chain[there:]
         elif role is MeshRole.ORIGINAL:
             labelled = catalog.mesh(shape.id, head.mesh_hash)
-            moved = compute_move(workspace.arrays, labelled, mesh, catalog.labels(head.id))
+            moved = _moved(workspace, shape, labelled, mesh, catalog.labels(head.id))
+            if isinstance(moved, Unplaced):
+                yield moved
+                continue
             labels, agreement = moved.labels, moved.agreement
         else:
             continue
@@ -76,7 +93,7 @@ def _confirmed(workspace: Workspace, shapes: Sequence[Shape], role: MeshRole) ->
 
 def _from_models(
     workspace: Workspace, shapes: Sequence[Shape], segmentation: Segmentation, role: MeshRole
-) -> Iterator[PlacedLabels]:
+) -> Iterator[PlacedLabels | Unplaced]:
     meshes = _meshes(workspace, shapes, role)
     for segmented in segment(workspace, shapes, segmentation):
         mesh = meshes.get(segmented.shape.id)
@@ -84,11 +101,25 @@ def _from_models(
             continue
         labels, agreement = segmented.labels, None
         if mesh.mesh_hash != segmented.mesh.mesh_hash:
-            moved = compute_move(workspace.arrays, segmented.mesh, mesh, segmented.labels)
+            moved = _moved(workspace, segmented.shape, segmented.mesh, mesh, segmented.labels)
+            if isinstance(moved, Unplaced):
+                yield moved
+                continue
             labels, agreement = moved.labels, moved.agreement
         yield PlacedLabels(
             segmented.shape, mesh, labels, segmented.model_version, segmentation.value, agreement=agreement
         )
+
+
+def _moved(
+    workspace: Workspace, shape: Shape, old_mesh: Mesh, new_mesh: Mesh, labels: UInt16[np.ndarray, " n"]
+) -> MovedLabels | Unplaced:
+    try:
+        return compute_move(workspace.arrays, old_mesh, new_mesh, labels)
+    except PartwiseError as error:
+        if isinstance(error, StoreError):
+            require_store(workspace.arrays)
+        return Unplaced(shape, str(error))
 
 
 def _meshes(workspace: Workspace, shapes: Sequence[Shape], role: MeshRole) -> dict[int, Mesh]:

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from partwise.errors import StoreError
 from partwise.exchange.export_manifest import ManifestShape, read_manifest
 from partwise.exchange.labels_psb import write_psb_labels
 from partwise.exchange.named_labels import NamedLabels
@@ -13,6 +14,7 @@ from partwise.geometry.faces import face_centroids
 from partwise.mesh import TriMesh
 from partwise.store.meshes import kept_mesh_key
 from partwise.store.records import MeshRole, RevisionKind, ShapeState
+from partwise.testing.expect import raises
 from partwise.testing.spheres import ball, halves, speckles
 from partwise.testing.workspaces import publish_evaluation, publish_features, publish_meshes, save_model
 from partwise.workspace.choices import ExportFormat, Segmentation
@@ -151,6 +153,49 @@ def test_what_a_person_changed_since_is_mapped_back(remeshed, tmp_path: Path) ->
     assert entry.revision_ids == (mine.id,)
     assert entry.agreement is not None
     assert entry.agreement >= 0.98
+
+
+def _confirm_and_damage(filled, *keys: str) -> None:
+    """Labels the working meshes of a.off and b.off, where b.off is twice as large; then those of `keys` are damaged."""
+    large = [TriMesh(2 * mesh.vertices, mesh.faces) for mesh in (ORIGINAL, WORKING)]
+    publish_meshes(filled.workspace, {filled.ids["b.off"]: large[0]}, "mesh", MeshRole.ORIGINAL)
+    publish_meshes(filled.workspace, {filled.ids["b.off"]: large[1]}, "remesh")
+    for key, mesh in ((KEY, WORKING), ("b.off", large[1])):
+        labels = halves(WORKING)
+        commit_labels(filled.workspace, filled.collection, filled.shape(key), labels, RevisionKind.HUMAN, "ann")
+        if key in keys:
+            filled.workspace.arrays.put_bytes(kept_mesh_key(mesh.content_hash()), b"damaged")
+
+
+@pytest.mark.parametrize("on", list(MeshRole))
+def test_a_mesh_that_cannot_be_read_costs_only_its_own_shape(remeshed, tmp_path: Path, on: MeshRole) -> None:
+    _confirm_and_damage(remeshed, KEY)
+    ws, out = remeshed.workspace, tmp_path / "out"
+    report = export_labels(ws, remeshed.collection, Segmentation.CONFIRMED, ExportFormat.PLY, out, on)
+    assert (report.n_written, report.n_without) == (1, 1)
+    (refused,) = report.refused
+    assert refused.startswith("a.off: ")
+    assert "safetensors" in refused
+    assert [entry.source_key for entry in read_manifest(report.manifest).shapes] == ["b.off"]
+    assert sorted(path.name for path in out.iterdir()) == ["b.ply", MANIFEST]
+
+
+def test_where_no_mesh_can_be_read_nothing_is_exported(remeshed, tmp_path: Path) -> None:
+    _confirm_and_damage(remeshed, KEY, "b.off")
+    with raises(StoreError, "a.off", "all 2 shapes"):
+        _export(remeshed, tmp_path / "out", Segmentation.CONFIRMED, MeshRole.ORIGINAL)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_store_that_is_down_ends_the_export(remeshed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _confirm_and_damage(remeshed, KEY)
+
+    def refuse(*_: object) -> None:
+        raise StoreError("the array store refused; is it reachable?")
+
+    monkeypatch.setattr(remeshed.workspace.arrays, "stage", refuse)
+    with raises(StoreError, "is it reachable"):
+        _export(remeshed, tmp_path / "out", Segmentation.CONFIRMED, MeshRole.ORIGINAL)
 
 
 def test_predictions_are_mapped_back(remeshed, tmp_path: Path) -> None:
