@@ -119,9 +119,9 @@ class _Writer:
         try:
             files = self._files(placed)
         except (StoreError, NotFoundError) as error:
-            require_store(self.workspace.arrays)
             if self._is_readable(placed):
                 raise
+            require_store(self.workspace.arrays)
             self.refused.append(f"{placed.shape.source_key}: {error}")
             return
         self.entries.append(_entry(placed, self.role, files))
