@@ -11,7 +11,7 @@ from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import StreamingResponse
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import Event
+from partwise.store.records import Event, EventKind
 from partwise_service.dependencies import Caller, CatalogDep, ServiceDep
 from partwise_service.event_stream import PAGE, event_stream
 from partwise_service.security.identity import Identity
@@ -19,12 +19,23 @@ from partwise_service.security.identity import Identity
 POLL_S = 1.0
 CHECK_S = 30.0
 MAX_EVENT_ID = 2**53
+_ID_DIGITS = 15
 router = APIRouter(tags=["events"])
 EVENT_STREAM = "text/event-stream"
-_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"content": {EVENT_STREAM: {"schema": {"type": "string"}}}, "description": "Until the client goes."}
+_EVENT = {
+    "type": "object",
+    "properties": {
+        "id": {"type": "string", "description": "To resume from."},
+        "event": {"type": "string", "enum": ["begin", "missed", *(kind.value for kind in EventKind)]},
+        "data": {"type": "string", "description": "A JSON object: `at`, `collection_id` and `payload`, or empty."},
+        "retry": {"type": "integer"},
+    },
+    "required": ["id", "event", "data"],
 }
-LastId = Annotated[str | None, Header(pattern="^[0-9]{1,15}$", description="The last id that the client has.")]
+_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"content": {EVENT_STREAM: {"schema": _EVENT}}, "description": "Events until the client goes."}
+}
+LastId = Annotated[str | None, Header(description="The last id that the client has.")]
 AfterId = Annotated[int | None, Query(ge=0, le=MAX_EVENT_ID, description="The same, for clients without the header.")]
 
 
@@ -58,7 +69,7 @@ async def stream_events(
                 return False
         return not await request.is_disconnected()
 
-    resumed = after if last_event_id is None else int(last_event_id)
+    resumed = after if last_event_id is None else _event_id(last_event_id)
     stream = event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed)
     return StreamingResponse(stream, media_type=EVENT_STREAM, headers={"X-Accel-Buffering": "no"})
 
@@ -67,3 +78,9 @@ def is_still_good(catalog: Catalog, caller: Identity) -> bool:
     """Whether the token that opened a stream has neither ended nor been revoked since."""
     token = catalog.token(caller.token.id)
     return token.revoked_at is None and token.expires_at > datetime.now(UTC)
+
+
+def _event_id(text: str) -> int:
+    """The id that a client resumes from; one that this service never gave is beyond all, so they begin anew."""
+    is_id = text.isascii() and text.isdigit() and len(text) <= _ID_DIGITS
+    return int(text) if is_id else MAX_EVENT_ID

@@ -99,11 +99,9 @@ def reject_labels(caller: Reviewer, shape: ScopedShape, catalog: CatalogDep, rej
     head = catalog.head_revision(shape.id)
     if head is None:
         raise NotFoundError(f"shape {shape.id} has no labels to send back")
-    opened = [
-        review
-        for review in catalog.reviews(shape.id)
-        if review.resolved_at is None and review.reason is not ReviewReason.REWORK
-    ]
+    opened = [review for review in catalog.reviews(shape.id) if review.resolved_at is None]
+    if any(review.reason is ReviewReason.REWORK for review in opened):
+        raise ConflictError(f"labels are sent back once but those of shape {shape.id} were already; await better ones")
     review = opened[0] if opened else catalog.add_review(head.id, NewReview(ReviewReason.CHECK))
     rejected = catalog.reject_review(review.id, caller.person_id, rejection.note, for_author=rejection.for_author)
     return ReviewOut.of(rejected)

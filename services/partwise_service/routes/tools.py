@@ -120,7 +120,7 @@ async def refine_model(
 
 
 async def _answer(request: Request, tools: ToolPool, call: ToolCall) -> Response:
-    labels = await _unless_gone(request, tools, call)
+    labels = await unless_gone(request, tools, call)
     mesh_hash = call.mesh.mesh_hash
     accepted = request.headers.get("accept", "")
     if "application/json" in accepted and SAFETENSORS not in accepted:
@@ -131,7 +131,7 @@ async def _answer(request: Request, tools: ToolPool, call: ToolCall) -> Response
     return await run_sync(lambda: safetensors_response(request, {"labels": labels}, tag, "no-store", about))
 
 
-async def _unless_gone(request: Request, tools: ToolPool, call: ToolCall) -> np.ndarray:
+async def unless_gone(request: Request, tools: ToolPool, call: ToolCall) -> np.ndarray:
     """The result, unless the client goes away first: then the call is dropped and whatever is answered goes nowhere."""
     running = asyncio.ensure_future(tools.run(call))
     gone = asyncio.ensure_future(_disconnected(request))

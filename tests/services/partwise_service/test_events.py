@@ -77,6 +77,13 @@ def test_who_missed_forgotten_events_is_told_to_begin_anew(annotator, workspace,
     assert _events(annotator.get("/events", params={"after": first}).text)[0] == (last, "missed", {})
 
 
+@pytest.mark.parametrize("unknown", ["999", "x", "-1", "9" * 30])
+def test_who_names_an_event_that_never_was_is_told_to_begin_anew(annotator, workspace, mugs, unknown) -> None:
+    last = _add(workspace, mugs.collection_id, 1)
+    answer = annotator.get("/events", headers={"Last-Event-ID": unknown})
+    assert _events(answer.text) == [(last, "missed", {})]
+
+
 def test_strangers_hear_nothing(nobody) -> None:
     assert nobody.get("/events").status_code == 401
 

@@ -23,7 +23,7 @@ N_EXAMPLES = 8
 def served(template, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[FastAPI, str]]:
     """A running application and an admin's secret."""
     path = Path(shutil.copytree(template.path, tmp_path_factory.mktemp("fuzz") / "ws"))
-    app = create_app(ServiceSettings(workspace=path, max_auth_failures=1_000_000))
+    app = create_app(ServiceSettings(workspace=path, max_auth_failures=1_000_000, event_stream_s=0.0))
     with TestClient(app):
         catalog = app.state.service.workspace.catalog
         new = NewToken(catalog.add_person("ada").id, Role.ADMIN, datetime.now(UTC) + timedelta(days=1))

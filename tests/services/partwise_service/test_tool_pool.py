@@ -8,10 +8,12 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 import pytest
+from starlette.requests import Request
 
 from partwise.errors import ParameterError
 from partwise.store.records import Mesh
 from partwise_service.problems import ProblemError
+from partwise_service.routes.tools import unless_gone
 from partwise_service.tool_calls import PatchesCall
 from partwise_service.tool_pool import Failed, PoolLimits, Refused, ToolPool
 
@@ -170,3 +172,33 @@ def test_a_shape_goes_to_the_process_that_knows_it() -> None:
 
     with closing(ToolPool("memory", PoolLimits(2, 1, 2, 60.0), answer_as_told)) as two:
         asyncio.run(calls(two))
+
+
+def test_a_client_that_goes_away_takes_its_call_out_of_the_line(tools) -> None:
+    async def gone() -> dict:
+        return {"type": "http.disconnect"}
+
+    async def calls() -> None:
+        running = asyncio.ensure_future(tools.run(call(1)))
+        await asyncio.sleep(0)
+        with pytest.raises(ProblemError, match="went away"):
+            await unless_gone(Request({"type": "http"}, gone), tools, call(KILL))
+        await asyncio.sleep(0)
+        assert tools.n_waiting == 0
+        pid = (await running)[0]
+        assert (await tools.run(call(2)))[0] == pid
+
+    asyncio.run(calls())
+
+
+def test_a_client_that_stays_gets_the_result(tools) -> None:
+    async def calls() -> int:
+        stays = asyncio.Event()
+
+        async def receive() -> dict:
+            await stays.wait()
+            return {"type": "http.disconnect"}
+
+        return int((await unless_gone(Request({"type": "http"}, receive), tools, call(7)))[1])
+
+    assert asyncio.run(calls()) == 7
