@@ -1,6 +1,7 @@
 """Labelled meshes in the layout of the Princeton benchmark: `[<Category>/]<id>.off` beside `<id>_labels.txt`."""
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,8 +17,11 @@ from partwise.unlabelled import NO_CLASS
 from partwise.workspace.ingest import mesh_files
 from partwise.workspace.labelling import PSB_ENDING
 from partwise_cli.bench.annotating import TaskShape
-from partwise_cli.bench.leave_one_out import evenly_spaced, part_names_of
+from partwise_cli.bench.leave_one_out import evenly_spaced
 from partwise_cli.bench.patches import TrueShape
+
+DAMAGE = (FileFormatError, LabelError, MeshError)
+"""What is wrong with one shape's files, and costs only that shape."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +64,22 @@ def labelled_files(folder: Path, on_category: Callable[[int, int], None] | None 
     for n_done, path in enumerate(categories, start=1):
         meshes = [mesh for mesh in mesh_files(path) if mesh.parent == path]
         labelled = [mesh for mesh in sorted(meshes) if mesh.with_name(mesh.stem + PSB_ENDING).is_file()]
-        names = tuple(part_names_of(path)) if labelled else ()
+        names = _part_names(labelled)
         found += [ShapeFile("" if path == folder else path.name, mesh, names) for mesh in labelled]
         if on_category is not None:
             on_category(n_done, len(categories))
     if not found:
         raise NotEnoughDataError(f"the toolbox is measured on <id>{PSB_ENDING} files but {folder} has none; add some")
     return found
+
+
+def _part_names(labelled: Sequence[Path]) -> tuple[str, ...]:
+    """Every part name that the label files use, sorted. A damaged file is named when its shape is read."""
+    names: set[str] = set()
+    for mesh in labelled:
+        with suppress(*DAMAGE):
+            names.update(read_psb_labels(mesh.with_name(mesh.stem + PSB_ENDING), read_mesh(mesh).n_faces).part_names)
+    return tuple(sorted(names))
 
 
 def sampled(files: Sequence[ShapeFile], limit: int | None) -> list[ShapeFile]:
@@ -83,7 +96,7 @@ def fully_labelled(files: Sequence[ShapeFile], refused: list[str]) -> Iterator[t
     for file in files:
         try:
             shape = file.read()
-        except (FileFormatError, LabelError, MeshError) as error:
+        except DAMAGE as error:
             refused.append(str(error) if str(file.mesh.parent) in str(error) else f"{file.mesh}: {error}")
             continue
         n_unlabelled = int((shape.truth == NO_CLASS).sum())
