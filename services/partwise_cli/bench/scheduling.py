@@ -208,11 +208,10 @@ class _Run:
 
     def go(self, n_total: int, on_progress: Callable[[RunProgress], None]) -> RunProgress:
         catalog: Any = _Timed(self.workspace.catalog, self.parts, "catalog", self._note_block)
-        arrays: Any = _Timed(self.workspace.arrays, self.parts, "unstage")
         # an actor that is replaced is a start, not a shape: starts are said apart
         config = replace(self.workspace.config.workers, n_actors=self.n_actors, recycle_after=n_total + 1)
         url = self.workspace.array_url
-        runner = StageRunner(catalog, arrays, url, self.stages, config, on_event=RunMetrics())
+        runner = StageRunner(catalog, self.workspace.arrays, url, self.stages, config, on_event=RunMetrics())
 
         def note(progress: RunProgress) -> None:
             self._note(progress)

@@ -24,7 +24,7 @@ def test_the_whole_and_its_parts_are_timed(cost: SchedulingCost) -> None:
     assert cost.wall_ms > 0
     assert cost.core_ms["total"] == pytest.approx(sum(v for k, v in cost.core_ms.items() if k != "total"), abs=1e-3)
     assert {"driver", "actors", "packer", "total"} <= cost.core_ms.keys()
-    assert {"count", "plan", "catalog", "unstage", "sweep"} <= cost.parts_wall_ms.keys()
+    assert {"count", "plan", "catalog", "sweep"} <= cost.parts_wall_ms.keys()
     assert {"stage", "read staged", "delete staged"} <= cost.once_ms.keys()
 
 
