@@ -25,7 +25,7 @@ demo: $(INSTALLED) ## the whole way of 40 simulated chairs, into $(DEMO)/
 	$(BIN)/partwise demo $(DEMO)
 
 test: $(INSTALLED) ## the everyday tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile
 
 test-slow: $(INSTALLED) ## kill loops and soaks
 	$(BIN)/python -m pytest -m slow

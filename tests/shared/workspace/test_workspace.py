@@ -21,7 +21,7 @@ from partwise.workspace.workspace import (
 
 LATER_MIGRATION = """
 revision = "9999"
-down_revision = "0001"
+down_revision = "{newest}"
 def upgrade():
     pass
 """
@@ -176,7 +176,8 @@ def test_migrating_what_is_up_to_date_changes_nothing(path: Path) -> None:
 def test_migrating_brings_an_older_catalog_up_to_date(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = path.parent / "migrations"
     shutil.copytree(migrate._MIGRATIONS, folder)
-    (folder / "versions" / "m9999_hats.py").write_text(LATER_MIGRATION)
+    newest = max(file.name[1:5] for file in (folder / "versions").glob("m*.py"))
+    (folder / "versions" / "m9999_hats.py").write_text(LATER_MIGRATION.format(newest=newest))
     monkeypatch.setattr(migrate, "_MIGRATIONS", folder)
     with raises(StoreError, "partwise migrate"), open_workspace(path):
         pass
