@@ -13,6 +13,7 @@ from partwise import __version__
 from partwise.workspace.workspace import open_workspace
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
+from partwise_service.page import install_page
 from partwise_service.problems import install_problems
 from partwise_service.routes import (
     arrays,
@@ -91,6 +92,7 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
         app.include_router(router, prefix=API_V1)
     install_problems(app)
     install_openapi(app)
+    install_page(app, settings.page_folder)
     _add_middleware(app, settings)
     return app
 

@@ -51,7 +51,7 @@ def safetensors_response(
     # safetensors writes an array's memory as it lies
     data = save({name: np.ascontiguousarray(array) for name, array in arrays.items()}, dict(metadata or {}))
     headers = _headers(tag, cache)
-    if len(data) >= _GZIP_FROM and _takes_gzip(request):
+    if len(data) >= _GZIP_FROM and takes_coding(request, "gzip"):
         data = gzip.compress(data, _GZIP_LEVEL, mtime=0)
         headers["Content-Encoding"] = "gzip"
     return Response(data, media_type=SAFETENSORS, headers=headers)
@@ -66,9 +66,10 @@ def _headers(tag: str, cache: str) -> dict[str, str]:
     return {"ETag": tag, "Cache-Control": cache, "Vary": "Accept-Encoding"}
 
 
-def _takes_gzip(request: Request) -> bool:
+def takes_coding(request: Request, wanted: str) -> bool:
+    """Whether the caller takes bodies of this content coding."""
     for each in request.headers.get("accept-encoding", "").lower().split(","):
         coding, _, quality = each.partition(";")
-        if coding.strip() in ("gzip", "*"):
+        if coding.strip() in (wanted, "*"):
             return quality.strip().replace(" ", "") not in ("q=0", "q=0.0", "q=0.00", "q=0.000")
     return False

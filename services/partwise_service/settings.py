@@ -15,6 +15,8 @@ from partwise.errors import ConfigError
 PREFIX = "PARTWISE_SERVICE_"
 """Of environment variables: `PARTWISE_SERVICE_PORT` sets `port`. Lists are separated by commas."""
 MEBIBYTE = 1 << 20
+BUILT_PAGE = Path(__file__).parent / "static"
+"""Where the client's build puts its files."""
 
 
 class ServiceSettings(BaseModel):
@@ -30,6 +32,7 @@ class ServiceSettings(BaseModel):
     lease_s : seconds for which a claim or a heartbeat holds a shape.
     tool_processes : in which tools run. max_queued_tools : calls that may wait for one; more are told to come back.
     tool_shapes : prepared shapes that each of them keeps. tool_timeout_s : after which a call is given up.
+    page_folder : the built files of the annotation page.
     event_stream_s : seconds after which a stream of events ends, for the client to go on with another.
     """
 
@@ -54,6 +57,7 @@ class ServiceSettings(BaseModel):
     tool_shapes: int = Field(16, ge=1, le=10_000)
     tool_timeout_s: float = Field(60.0, gt=0)
     event_stream_s: float = Field(3600.0, ge=0)
+    page_folder: Path = BUILT_PAGE
 
     @field_validator("cors_origins", "trusted_proxies", mode="before")
     @classmethod
