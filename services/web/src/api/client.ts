@@ -1,0 +1,47 @@
+/**
+ * The one module that talks to the service.
+ *
+ * JSON goes through `api`, whose types come from the service's OpenAPI document; arrays through `fetchArrays`.
+ * Both throw `Problem` for what the service refuses and `Unreachable` where it does not answer.
+ */
+import createClient, { type Middleware } from "openapi-fetch";
+import { Problem, problemOf, Unreachable } from "./problem";
+import { type Arrays, parseSafetensors } from "./safetensors";
+import type { components, paths } from "./schema";
+
+export type Schemas = components["schemas"];
+
+const refusals: Middleware = {
+  async onResponse({ response }) {
+    if (!response.ok && response.status !== 304) throw await problemOf(response);
+  },
+  onError({ error }) {
+    return error instanceof Problem ? error : new Unreachable(error);
+  },
+};
+
+export const api = createClient<paths>({ baseUrl: "/", credentials: "same-origin" });
+api.use(refusals);
+
+/** The body of an answer that has one. `api` has thrown already where there was none. */
+export async function body<T>(call: Promise<{ data?: T | undefined }>): Promise<T> {
+  return (await call).data as T;
+}
+
+/** Arrays and the strings that describe them, from a path below /api/v1 that answers safetensors. */
+export async function fetchArrays(path: string, init: RequestInit = {}): Promise<Arrays> {
+  const headers = new Headers(init.headers);
+  headers.set("Accept", "application/vnd.safetensors, application/octet-stream");
+  const response = await reach(`/api/v1${path}`, { ...init, headers, credentials: "same-origin" });
+  if (!response.ok) throw await problemOf(response);
+  return parseSafetensors(await response.arrayBuffer());
+}
+
+async function reach(url: string, init: RequestInit): Promise<Response> {
+  try {
+    return await fetch(url, init);
+  } catch (error) {
+    if (error instanceof DOMException && error.name === "AbortError") throw error;
+    throw new Unreachable(error);
+  }
+}
