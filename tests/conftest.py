@@ -1,5 +1,6 @@
 """What tests of several packages share."""
 
+import signal
 from collections.abc import Iterator
 
 import pytest
@@ -20,6 +21,12 @@ Modules that check what they are given themselves are not among them: their own 
 install_import_hook([f"partwise.{module}" for module in ARRAY_FUNCTIONS], "beartype.beartype")
 
 N_CPUS = 2
+
+
+def pytest_configure() -> None:
+    """What tests start can be interrupted, even where a shell began the tests in its background."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
