@@ -20,7 +20,9 @@ from partwise_service.routes import (
     collections,
     drafts,
     events,
+    failures,
     figures,
+    jobs,
     leases,
     parts,
     people,
@@ -51,6 +53,8 @@ ROUTERS: Sequence[APIRouter] = (
     leases.router,
     drafts.router,
     tools.router,
+    jobs.router,
+    failures.router,
     events.router,
 )
 """Every resource of the API, in the order of the document. A route file is served once its router is in here."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any, Protocol
 
-from partwise.store.records import Job, JobKind, JobState, Progress
+from partwise.store.records import Job, JobKind, JobState, Model, NewModel, Progress
 
 
 class JobCatalog(Protocol):
@@ -22,12 +22,18 @@ class JobCatalog(Protocol):
         """A page of jobs, newest first; `before` is the last id of the page before."""
         ...
 
-    def claim_job(self, owner: str, kinds: Sequence[JobKind] | None = None) -> Job | None:
-        """Begin the oldest pending job of these kinds, any if None; None if there is none.
+    def claim_job(
+        self, owner: str, kinds: Sequence[JobKind] | None = None, *, collection_id: int | None = None
+    ) -> Job | None:
+        """Begin the pending job that has waited longest, of these kinds and this collection, any if None.
 
-        Of `COALESCED_KINDS` one job of a kind runs at a time in a collection. A training that begins covers all that
-        was confirmed until then.
+        None if there is none. `BACKGROUND_KINDS` come after all others. Of `COALESCED_KINDS` one job of a kind runs at
+        a time in a collection. A training that begins covers all that was confirmed until then.
         """
+        ...
+
+    def next_job(self, kinds: Sequence[JobKind] | None = None, *, collection_id: int | None = None) -> Job | None:
+        """The job that `claim_job` would begin now; it is left as it is."""
         ...
 
     def heartbeat_job(self, job_id: int, owner: str, progress: Progress | None = None) -> Job:
@@ -43,6 +49,27 @@ class JobCatalog(Protocol):
         """End a job as done, failed or cancelled.
 
         Raises `ConflictError` as `heartbeat_job`, `ParameterError` for a state that is no end.
+        """
+        ...
+
+    def finish_training(self, job_id: int, owner: str, model: NewModel) -> Model:
+        """End a training as done with its model published and an evaluation asked for: all or nothing.
+
+        So a job that was begun twice publishes one model. Raises `ConflictError` as `heartbeat_job`.
+        """
+        ...
+
+    def release_jobs(self, owner: str, message: str) -> Sequence[Job]:
+        """Let the jobs that an owner has begun be begun again, without counting this time; as they are then.
+
+        One that was to be cancelled is, and so is one beside which another of its kind waits.
+        """
+        ...
+
+    def return_job(self, job_id: int, owner: str, message: str, *, max_attempts: int = 3) -> Job:
+        """As `release_jobs` of one job that could not be done now: it counts, and fails if begun `max_attempts` times.
+
+        Raises `ConflictError` as `heartbeat_job`.
         """
         ...
 

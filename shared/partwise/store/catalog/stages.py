@@ -71,9 +71,15 @@ class StageCatalog(Protocol):
         ...
 
     def failures(
-        self, collection_id: int, *, stage: str | None = None, after: int = 0, limit: int = 1000
+        self,
+        collection_id: int,
+        *,
+        stage: str | None = None,
+        kind: FailureKind | None = None,
+        after: int = 0,
+        limit: int = 1000,
     ) -> Sequence[Failure]:
-        """A page of failed runs by run id."""
+        """A page of failed runs by run id, of this stage and kind if given."""
         ...
 
     def stage_counts(self, collection_id: int) -> Sequence[StageCount]:

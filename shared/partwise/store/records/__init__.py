@@ -16,7 +16,7 @@ from partwise.store.records.confirmations import (
 )
 from partwise.store.records.drafts import Draft, DraftOutcome, NewDraft, StoredStroke
 from partwise.store.records.events import Event, EventBounds, EventKind, NewEvent
-from partwise.store.records.jobs import COALESCED_KINDS, Job, JobKind, JobState, Progress
+from partwise.store.records.jobs import BACKGROUND_KINDS, COALESCED_KINDS, Job, JobKind, JobState, Progress
 from partwise.store.records.labels import LabelRevision, NewRevision, RevisionKind
 from partwise.store.records.leases import (
     MAX_HELD,
@@ -27,7 +27,17 @@ from partwise.store.records.leases import (
     QueueDepth,
     check_lease_time,
 )
-from partwise.store.records.listing import ListAnchor, ListedShape, Ordering, ShapeFilter, ShapeOrder
+from partwise.store.records.listing import (
+    ANY_STAGE,
+    BY_NAME,
+    Holder,
+    ListAnchor,
+    ListedShape,
+    Ordering,
+    ShapeFilter,
+    ShapeOrder,
+    ShapeTile,
+)
 from partwise.store.records.models import Embedding, FirstShape, Model, NewModel, QueueAnchor, QueueRow
 from partwise.store.records.shapes import (
     IngestedShape,
@@ -55,6 +65,9 @@ from partwise.store.records.stages import (
 from partwise.store.records.tokens import IssuedCode, IssuedToken, NewToken, Role, Token
 
 __all__ = [
+    "ANY_STAGE",
+    "BACKGROUND_KINDS",
+    "BY_NAME",
     "COALESCED_KINDS",
     "MAX_HELD",
     "Answer",
@@ -74,6 +87,7 @@ __all__ = [
     "Failure",
     "FailureKind",
     "FirstShape",
+    "Holder",
     "IngestOutcome",
     "IngestedShape",
     "IssuedCode",
@@ -119,6 +133,7 @@ __all__ = [
     "ShapeFilter",
     "ShapeOrder",
     "ShapeState",
+    "ShapeTile",
     "StageCount",
     "StageRun",
     "StoredStroke",

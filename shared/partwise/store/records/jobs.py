@@ -16,10 +16,14 @@ class JobKind(StrEnum):
     REFINE = "refine"
     EXPORT = "export"
     INGEST = "ingest"
+    REFILL = "refill"  # of the queue, after the number of labels a shape gets was changed
 
 
 COALESCED_KINDS = (JobKind.PREPROCESS, JobKind.TRAIN, JobKind.EVALUATE, JobKind.REFINE)
 """Kinds of which one waiting job is enough for all who ask: it works on what is there when it starts."""
+
+BACKGROUND_KINDS = (JobKind.PREPROCESS, JobKind.EVALUATE, JobKind.REFINE)
+"""Kinds that may take days, shape by shape: begun after all others, and stopped between two shapes for them."""
 
 
 class JobState(StrEnum):

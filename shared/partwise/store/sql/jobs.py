@@ -8,7 +8,7 @@ from sqlalchemy import ColumnElement, Connection, Row, literal_column, select, u
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
-from partwise.store.records import COALESCED_KINDS, EventKind, Job, JobKind, JobState, NewEvent, Progress
+from partwise.store.records import EventKind, Job, JobKind, JobState, NewEvent, Progress
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import insert_for
 from partwise.store.sql.events import append_events
@@ -73,10 +73,10 @@ def jobs(
 
 
 def heartbeat_job(connection: Connection, job_id: int, owner: str, progress: Progress | None, now: datetime) -> Job:
-    known = _own_running(connection, job_id, owner)
+    known = own_running(connection, job_id, owner)
     values: dict[str, Any] = {"heartbeat_at": now}
     if progress is None or progress == known.progress:
-        return to_job(connection.execute(_update(job_id, values)).one())
+        return to_job(connection.execute(update_job(job_id, values)).one())
     return changed_job(connection, job_id, values | _columns(progress), now)
 
 
@@ -91,7 +91,7 @@ def finish_job(
 ) -> Job:
     if state not in (JobState.DONE, JobState.FAILED, JobState.CANCELLED):
         raise ParameterError(f"a job ends as done, failed or cancelled but was to end as {state}; name one of them")
-    known = _own_running(connection, job_id, owner)
+    known = own_running(connection, job_id, owner)
     values: dict[str, Any] = {"state": state.value, "finished_at": now, "message": message or known.progress.message}
     if result is not None:
         values["result"] = dict(result)
@@ -114,43 +114,15 @@ def retry_job(connection: Connection, job_id: int, now: datetime) -> Job:
     return enqueue_job(connection, known.collection_id, known.kind, known.parameters, now)
 
 
-def requeue_lost_jobs(connection: Connection, silent_since: datetime, max_attempts: int, now: datetime) -> list[Job]:
-    query = (
-        select(t.job)
-        .where(t.job.c.state == RUNNING, t.job.c.heartbeat_at < silent_since)
-        .order_by(t.job.c.heartbeat_at)
-        .with_for_update(skip_locked=True)
-    )
-    lost = [to_job(row) for row in connection.execute(query)]
-    changed = [
-        to_job(connection.execute(_update(each.id, _after_loss(connection, each, max_attempts, now))).one())
-        for each in lost
-    ]
-    append_events(connection, [job_event(each) for each in changed], now)
-    return changed
-
-
-def _after_loss(connection: Connection, lost: Job, max_attempts: int, now: datetime) -> dict[str, Any]:
-    of_kind = (t.job.c.collection_id == lost.collection_id) & (t.job.c.kind == lost.kind.value)
-    waits = connection.execute(select(t.job.c.id).where(of_kind, t.job.c.state == PENDING)).scalar()
-    if lost.cancel_requested or (lost.kind in COALESCED_KINDS and waits is not None):
-        message = "its owner is gone" if lost.cancel_requested else f"its owner is gone; job {waits} does its work"
-        return {"state": JobState.CANCELLED.value, "finished_at": now, "message": message}
-    if lost.attempts >= max_attempts:
-        message = f"its owner was lost {lost.attempts} times; look at the workers' logs"
-        return {"state": JobState.FAILED.value, "finished_at": now, "message": message}
-    return {"state": JobState.PENDING.value, "message": "its owner is gone; it will be begun again"}
-
-
 def job_event(about: Job) -> NewEvent:
     """Says where a job stands."""
     payload = {
         "job_id": about.id,
-        "kind": about.kind.value,
+        "job_kind": about.kind.value,
         "state": about.state.value,
-        "n_done": about.progress.n_done,
-        "n_failed": about.progress.n_failed,
-        "n_total": about.progress.n_total,
+        "done": about.progress.n_done,
+        "failed": about.progress.n_failed,
+        "total": about.progress.n_total,
         "message": about.progress.message,
     }
     return NewEvent(EventKind.JOB, about.collection_id, payload)
@@ -165,18 +137,19 @@ def _columns(progress: Progress) -> dict[str, Any]:
     }
 
 
-def _update(job_id: int, values: Mapping[str, Any]) -> Any:
+def update_job(job_id: int, values: Mapping[str, Any]) -> Any:
     return update(t.job).where(t.job.c.id == job_id).values(values).returning(t.job)
 
 
 def changed_job(connection: Connection, job_id: int, values: Mapping[str, Any], now: datetime) -> Job:
     """The job with these values, which open pages are told: the last thing a transaction does."""
-    changed = to_job(connection.execute(_update(job_id, values)).one())
+    changed = to_job(connection.execute(update_job(job_id, values)).one())
     append_events(connection, [job_event(changed)], now)
     return changed
 
 
-def _own_running(connection: Connection, job_id: int, owner: str) -> Job:
+def own_running(connection: Connection, job_id: int, owner: str) -> Job:
+    """The job, locked; ConflictError unless it runs and is this owner's."""
     known = _locked(connection, job_id)
     if known.state is not JobState.RUNNING or known.owner != owner:
         raise ConflictError(

@@ -216,7 +216,7 @@ def clear_failures(
     if stage is not None:
         statement = statement.where(t.stage_run.c.stage == stage)
     if kind is not None:
-        statement = statement.where(t.stage_run.c.summary["kind"].as_string() == kind.value)
+        statement = statement.where(_is_of_kind(kind))
     if reason_contains:
         statement = statement.where(t.stage_run.c.reason.icontains(reason_contains, autoescape=True))
     some_statements = (
@@ -231,6 +231,10 @@ def clear_failures(
     ]
     _renew(connection, set(cleared), now)
     return len(cleared)
+
+
+def _is_of_kind(kind: FailureKind) -> ColumnElement[bool]:
+    return t.stage_run.c.summary["kind"].as_string() == kind.value
 
 
 def _runs(*columns: Any) -> Select[Any]:
@@ -267,7 +271,7 @@ def failed_runs(connection: Connection, shape_ids: SizedIterable[int], stage: st
 
 
 def failures(
-    connection: Connection, collection_id: int, stage: str | None, after: int, limit: int
+    connection: Connection, collection_id: int, stage: str | None, kind: FailureKind | None, after: int, limit: int
 ) -> Sequence[Failure]:
     query = (
         _runs(t.shape.c.source_key)
@@ -278,6 +282,8 @@ def failures(
     )
     if stage is not None:
         query = query.where(t.stage_run.c.stage == stage)
+    if kind is not None:
+        query = query.where(_is_of_kind(kind))
     return [Failure(_run(row), row.source_key) for row in connection.execute(query)]
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import claims, jobs
+from partwise.store.sql import claims, jobs, returns, trainings
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -25,9 +25,15 @@ class SqlJobCatalog(SqlBase):
         with reading(self._engine) as connection:
             return jobs.jobs(connection, collection_id, before, limit, state)
 
-    def claim_job(self, owner: str, kinds: Sequence[r.JobKind] | None = None) -> r.Job | None:
+    def claim_job(
+        self, owner: str, kinds: Sequence[r.JobKind] | None = None, *, collection_id: int | None = None
+    ) -> r.Job | None:
         with writing(self._engine) as connection:
-            return claims.claim_job(connection, owner, kinds, self._clock())
+            return claims.claim_job(connection, owner, kinds, collection_id, self._clock())
+
+    def next_job(self, kinds: Sequence[r.JobKind] | None = None, *, collection_id: int | None = None) -> r.Job | None:
+        with reading(self._engine) as connection:
+            return claims.next_job(connection, kinds, collection_id)
 
     def heartbeat_job(self, job_id: int, owner: str, progress: r.Progress | None = None) -> r.Job:
         with writing(self._engine) as connection:
@@ -39,6 +45,18 @@ class SqlJobCatalog(SqlBase):
         with writing(self._engine) as connection:
             return jobs.finish_job(connection, job_id, owner, state, message, result, self._clock())
 
+    def finish_training(self, job_id: int, owner: str, model: r.NewModel) -> r.Model:
+        with writing(self._engine) as connection:
+            return trainings.finish_training(connection, job_id, owner, model, self._clock())
+
+    def release_jobs(self, owner: str, message: str) -> Sequence[r.Job]:
+        with writing(self._engine) as connection:
+            return returns.release_jobs(connection, owner, message, self._clock())
+
+    def return_job(self, job_id: int, owner: str, message: str, *, max_attempts: int = 3) -> r.Job:
+        with writing(self._engine) as connection:
+            return returns.return_job(connection, job_id, owner, message, max_attempts, self._clock())
+
     def cancel_job(self, job_id: int) -> r.Job:
         with writing(self._engine) as connection:
             return jobs.cancel_job(connection, job_id, self._clock())
@@ -49,4 +67,4 @@ class SqlJobCatalog(SqlBase):
 
     def requeue_lost_jobs(self, silent_since: datetime, *, max_attempts: int = 3) -> Sequence[r.Job]:
         with writing(self._engine) as connection:
-            return jobs.requeue_lost_jobs(connection, silent_since, max_attempts, self._clock())
+            return returns.requeue_lost_jobs(connection, silent_since, max_attempts, self._clock())

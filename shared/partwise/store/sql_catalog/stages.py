@@ -52,10 +52,16 @@ class SqlStageCatalog(SqlBase):
             return stages.failed_runs(connection, shape_ids, stage)
 
     def failures(
-        self, collection_id: int, *, stage: str | None = None, after: int = 0, limit: int = 1000
+        self,
+        collection_id: int,
+        *,
+        stage: str | None = None,
+        kind: r.FailureKind | None = None,
+        after: int = 0,
+        limit: int = 1000,
     ) -> Sequence[r.Failure]:
         with reading(self._engine) as connection:
-            return stages.failures(connection, collection_id, stage, after, limit)
+            return stages.failures(connection, collection_id, stage, kind, after, limit)
 
     def stage_counts(self, collection_id: int) -> Sequence[r.StageCount]:
         with reading(self._engine) as connection:

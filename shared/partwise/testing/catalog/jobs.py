@@ -8,7 +8,17 @@ import pytest
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store.catalog import Catalog
-from partwise.store.records import COALESCED_KINDS, EventKind, Job, JobKind, JobState, NewEvent, Progress
+from partwise.store.records import (
+    BACKGROUND_KINDS,
+    COALESCED_KINDS,
+    EventKind,
+    Job,
+    JobKind,
+    JobState,
+    NewEvent,
+    NewModel,
+    Progress,
+)
 from partwise.testing.catalog.samples import add_collection
 from partwise.testing.expect import raises
 
@@ -57,6 +67,40 @@ class JobConformance:
         assert catalog.claim_job("w1", [JobKind.EXPORT, JobKind.INGEST]) is None
         assert catalog.claim_job("w1", [JobKind.TRAIN]) is not None
 
+    def test_background_work_comes_after_all_others(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        for kind in (*BACKGROUND_KINDS, JobKind.TRAIN, JobKind.EXPORT):
+            catalog.enqueue_job(collection.id, kind)
+        claimed = [catalog.claim_job("w1") for _ in range(5)]
+        assert [job and job.kind for job in claimed] == [JobKind.TRAIN, JobKind.EXPORT, *BACKGROUND_KINDS]
+
+    def test_background_work_of_collections_takes_turns(self, catalog: Catalog) -> None:
+        collections = [add_collection(catalog, 0, name)[0] for name in ("mugs", "vases")]
+        first, second = (catalog.enqueue_job(each.id, JobKind.EVALUATE) for each in collections)
+        begun = []
+        for _ in range(3):
+            job = catalog.claim_job("w1")
+            assert job is not None
+            begun.append(job.id)
+            catalog.release_jobs("w1", "gives way")
+        assert begun == [first.id, second.id, first.id]
+
+    def test_an_owner_takes_jobs_of_one_collection(self, catalog: Catalog) -> None:
+        (mugs, _), (vases, _) = add_collection(catalog, 0, "mugs"), add_collection(catalog, 0, "vases")
+        job = catalog.enqueue_job(vases.id, JobKind.TRAIN)
+        assert catalog.claim_job("w1", collection_id=mugs.id) is None
+        assert catalog.claim_job("w1", collection_id=vases.id) == catalog.job(job.id)
+
+    def test_one_looks_at_the_next_job_without_taking_it(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        assert catalog.next_job() is None
+        job = catalog.enqueue_job(collection.id, JobKind.TRAIN)
+        assert catalog.next_job() == catalog.next_job(collection_id=collection.id) == job
+        assert catalog.next_job([JobKind.EXPORT]) is None
+        catalog.claim_job("w1")
+        catalog.enqueue_job(collection.id, JobKind.TRAIN)
+        assert catalog.next_job() is None
+
     def test_one_training_runs_at_a_time_and_one_waits(self, catalog: Catalog) -> None:
         job = _running(catalog)
         waiting = catalog.enqueue_job(job.collection_id, JobKind.TRAIN)
@@ -98,6 +142,60 @@ class JobConformance:
         assert done.is_over
         with raises(ParameterError, "running"):
             catalog.finish_job(job.id, "w1", JobState.RUNNING)
+
+    def test_a_training_ends_with_its_model_and_asks_for_an_evaluation(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        new = NewModel(job.collection_id, {}, "models/a.safetensors", ())
+        model = catalog.finish_training(job.id, "w1", new)
+        assert catalog.latest_model(job.collection_id) == model
+        assert (catalog.job(job.id).state, catalog.job(job.id).result) == (
+            JobState.DONE,
+            {"model_version": 1, "n_shapes": 0},
+        )
+        assert [each.kind for each in catalog.jobs(job.collection_id, state=JobState.PENDING)] == [JobKind.EVALUATE]
+        told = [event for event in catalog.events(after=0) if event.kind is EventKind.TRAINING]
+        assert [event.payload["model_version"] for event in told] == [1]
+
+    def test_a_training_that_was_lost_publishes_nothing(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        catalog.requeue_lost_jobs(_later())
+        with raises(ConflictError, "its owner"):
+            catalog.finish_training(job.id, "w1", NewModel(job.collection_id, {}, "models/a.safetensors", ()))
+        assert catalog.latest_model(job.collection_id) is None
+
+    def test_released_jobs_are_begun_again_as_if_they_had_not_been(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        assert catalog.release_jobs("w2", "stops") == []
+        (released,) = catalog.release_jobs("w1", "stops")
+        assert (released.id, released.state, released.attempts) == (job.id, JobState.PENDING, 0)
+        assert released.progress.message == "stops"
+        with raises(ConflictError, "its owner"):
+            catalog.heartbeat_job(job.id, "w1")
+
+    def test_a_released_job_gives_way_to_the_one_that_waits(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        waiting = catalog.enqueue_job(job.collection_id, JobKind.TRAIN)
+        (released,) = catalog.release_jobs("w1", "stops")
+        assert (released.state, released.progress.message) == (
+            JobState.CANCELLED,
+            f"stops; job {waiting.id} does its work",
+        )
+
+    def test_a_released_job_that_was_to_stop_has_stopped(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        catalog.cancel_job(job.id)
+        assert [each.state for each in catalog.release_jobs("w1", "stops")] == [JobState.CANCELLED]
+
+    def test_a_job_that_cannot_be_done_now_fails_in_the_end(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        for attempt in (1, 2):
+            returned = catalog.return_job(job.id, "w1", "no room")
+            assert (returned.state, returned.attempts) == (JobState.PENDING, attempt)
+            catalog.claim_job("w1")
+        failed = catalog.return_job(job.id, "w1", "no room")
+        assert (failed.state, failed.progress.message, failed.is_over) == (JobState.FAILED, "no room", True)
+        with raises(ConflictError, "its owner"):
+            catalog.return_job(job.id, "w1", "no room")
 
     def test_a_pending_job_is_cancelled_at_once_and_a_running_one_is_asked_to_stop(self, catalog: Catalog) -> None:
         running = _running(catalog)
