@@ -1,77 +1,124 @@
 """/collections/{collection_id}/shapes, /shapes/{shape_id}: the table, and one shape with how it came to be."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Depends, Query
 
-from partwise.errors import NotFoundError
-from partwise.store.catalog import SHOWN_KINDS
-from partwise.store.records import Role, ShapeFilter, ShapeOrder, ShapeState
+from partwise.store.catalog import SHOWN_KINDS, Catalog
+from partwise.store.records import ANY_STAGE, BY_NAME, ListedShape, Role, ShapeFilter, ShapeOrder, ShapeState
 from partwise.workspace.provenance import FailureCard, ProvenanceCard, provenance
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep
+from partwise_service.held_leases import QUEUE_SCORE
 from partwise_service.schemas.base import MAX_ROW_ID, Page
 from partwise_service.schemas.paging import anchor_of, cursor_of
-from partwise_service.schemas.shapes import RankedShapes, RevisionOut, RevisionsOut, ShapeOut, ShapeRow
+from partwise_service.schemas.shapes import (
+    CountOut,
+    DirectionName,
+    OrderOut,
+    OrdersOut,
+    RankedShapes,
+    RevisionOut,
+    RevisionsOut,
+    ShapeOut,
+    ShapeRow,
+)
 
 MAX_PAGE = 500
+NO_ORDER = "none"
+LIVE_UP_TO = 20_000
+"""Shapes up to which a jump is into the present order; past them into one made beforehand, where there is one."""
+LABELS = {"entropy": "Entropy", "entropy_by_area": "Entropy by area", "bald": "BALD"}
 router = APIRouter(tags=["shapes"])
 
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE, description="Rows of a page, at most.")]
 After = Annotated[str | None, Query(max_length=80, description="`next` of the page before.")]
 Id = Annotated[int | None, Query(ge=0, le=MAX_ROW_ID)]
-ScoreName = Annotated[str | None, Query(pattern="^[a-z_]{1,64}$", description="A score's name; by id without one.")]
+StageName = Annotated[
+    str | None, Query(pattern="^[a-z_]{1,64}$", description=f"The stage that failed, `{ANY_STAGE}` for whichever.")
+]
+OrderName = Annotated[
+    str, Query(pattern="^[a-z_]{1,64}$", description=f"`{NO_ORDER}` (by id), `{BY_NAME}`, or a score's name.")
+]
+
+
+def shape_filter(
+    state: ShapeState | None = None, part: Id = None, cluster: Id = None, author: Id = None, failure: StageName = None
+) -> ShapeFilter:
+    """What shapes must meet, all of it."""
+    return ShapeFilter(state, part, cluster, author, failure)
+
+
+def shape_order(order: OrderName = NO_ORDER, direction: DirectionName = DirectionName.ASC) -> ShapeOrder:
+    """The order that the table is in."""
+    return ShapeOrder(None if order == NO_ORDER else order, direction is DirectionName.DESC)
+
+
+Where = Annotated[ShapeFilter, Depends(shape_filter)]
+Order = Annotated[ShapeOrder, Depends(shape_order)]
 
 
 @router.get("/collections/{collection_id}/shapes")
 def list_shapes(
     collection: ScopedCollection,
     catalog: CatalogDep,
+    where: Where,
+    order: Order,
     after: After = None,
     limit: Limit = 100,
-    state: ShapeState | None = None,
-    part: Id = None,
-    cluster: Id = None,
-    author: Id = None,
-    failed_stage: Annotated[str | None, Query(pattern="^[a-z_]{1,64}$")] = None,
-    order: ScoreName = None,
-    descending: bool = False,
 ) -> Page[ShapeRow]:
-    """A page of the table: shapes that meet every filter given, in order of a score or of their ids.
+    """A page of the table: shapes that meet every filter given, in order of a score, of their names or of their ids.
 
     In an order by score, shapes that have no such score are left out.
     """
-    rows = catalog.list_shapes(
-        collection.id,
-        where=ShapeFilter(state, part, cluster, author, failed_stage),
-        order=ShapeOrder(order, descending),
-        after=anchor_of(after),
-        limit=limit,
-    )
-    has_more = len(rows) == limit
-    return Page(items=[ShapeRow.of(row) for row in rows], next=cursor_of(rows[-1].anchor) if has_more else None)
+    rows = catalog.list_shapes(collection.id, where=where, order=order, after=anchor_of(after), limit=limit)
+    return Page(items=_with_tiles(catalog, rows), next=cursor_of(rows[-1].anchor) if len(rows) == limit else None)
+
+
+@router.get("/collections/{collection_id}/shapes/count")
+def count_shapes(collection: ScopedCollection, catalog: CatalogDep, where: Where, order: Order) -> CountOut:
+    """How many rows the table has in all."""
+    return CountOut(n_shapes=catalog.count_shapes(collection.id, where=where, order=order))
 
 
 @router.get("/collections/{collection_id}/shapes/ranked")
 def jump_to_rank(
     collection: ScopedCollection,
     catalog: CatalogDep,
-    first_rank: Annotated[int, Query(ge=0, le=MAX_ROW_ID)] = 0,
+    where: Where,
+    order: Order,
+    first_rank: Annotated[int, Query(ge=0, le=MAX_ROW_ID, description="Counted from 0.")] = 0,
     limit: Limit = 100,
-    order: ScoreName = None,
-    descending: bool = False,
 ) -> RankedShapes:
-    """Shapes from a rank on, in an order that is made anew from time to time: for scrollbars."""
-    ordering = catalog.ordering(collection.id, order)
-    if ordering is None:
-        raise NotFoundError(f"the order by {order or 'id'} has not been made yet; page through /shapes meanwhile")
-    ids = catalog.ordered_shapes(ordering.id, first_rank, limit, descending=descending)
-    rows = catalog.listed_shapes(ids, order)
-    return RankedShapes(
-        n_shapes=ordering.n_shapes,
-        built_at=ordering.built_at,
-        items=[ShapeRow.of(rows[shape_id]) for shape_id in ids if shape_id in rows],
-    )
+    """Shapes from a rank on, under the same filters and in the same orders as the list: for scrollbars."""
+    n_shapes, built_at = catalog.count_shapes(collection.id, where=where, order=order), None
+    has_score = order.score_name not in (None, BY_NAME)
+    made = catalog.ordering(collection.id, order.score_name) if has_score and where == ShapeFilter() else None
+    rows: Sequence[ListedShape]
+    if made is not None and n_shapes > LIVE_UP_TO:
+        n_shapes, built_at = made.n_shapes, made.built_at
+        ids = catalog.ordered_shapes(made.id, first_rank, limit, descending=order.descending)
+        known = catalog.listed_shapes(ids, order.score_name)
+        rows = [known[shape_id] for shape_id in ids]
+    else:
+        rows = catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit)
+    return RankedShapes(n_shapes=n_shapes, built_at=built_at, items=_with_tiles(catalog, rows, first_rank))
+
+
+@router.get("/collections/{collection_id}/orders")
+def list_orders(collection: ScopedCollection, catalog: CatalogDep) -> OrdersOut:
+    """The orders that the table can be in now."""
+    asc, desc = DirectionName.ASC, DirectionName.DESC
+    always = [
+        OrderOut(name=NO_ORDER, label="None", direction_default=asc, is_queues=False),
+        OrderOut(name=BY_NAME, label="Name", direction_default=asc, is_queues=False),
+    ]
+    scores = [
+        OrderOut(name=name, label=_label(name), direction_default=desc, is_queues=name == QUEUE_SCORE)
+        for name in catalog.score_names(collection.id)
+    ]
+    return OrdersOut(items=[*always, *scores])
 
 
 @router.get("/shapes/{shape_id}")
@@ -96,3 +143,15 @@ def _without_logs(card: ProvenanceCard) -> ProvenanceCard:
         return None if failure is None else replace(failure, log=(), steps=())
 
     return replace(card, stages=tuple(replace(stage, failure=without_log(stage.failure)) for stage in card.stages))
+
+
+def _with_tiles(catalog: Catalog, rows: Sequence[ListedShape], first_rank: int | None = None) -> list[ShapeRow]:
+    tiles = catalog.shape_tiles([row.shape.id for row in rows])
+    return [
+        ShapeRow.of(row, tiles[row.shape.id], None if first_rank is None else first_rank + place)
+        for place, row in enumerate(rows)
+    ]
+
+
+def _label(score_name: str) -> str:
+    return LABELS.get(score_name, score_name.replace("_", " ").capitalize())

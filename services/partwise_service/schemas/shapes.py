@@ -1,54 +1,113 @@
 """Shapes, as rows of the table and one by one, with their meshes, revisions and reviews."""
 
 from datetime import datetime
+from enum import StrEnum
 from typing import Annotated
 
 from pydantic import Field, JsonValue
 
-from partwise.store.records import LabelRevision, ListedShape, Mesh, RevisionKind, Shape, ShapeState
+from partwise.store.records import LabelRevision, ListedShape, Mesh, RevisionKind, Shape, ShapeState, ShapeTile
 from partwise.store.reviews import Review, ReviewOutcome, ReviewReason
 from partwise.workspace.provenance import ProvenanceCard
 from partwise_service.schemas.base import NO_NUL, Answer, Request
 
 
-class ShapeRow(Answer):
-    """A row of the table. `score`, `model_version`: of the score that the list is ordered by, and which model's it is.
+class HolderOut(Answer):
+    """Who has a shape in their hands. Once `expires_at` is past, anybody may claim it."""
 
-    author_id : whose the newest labels are. cluster : in the embedding. failed_stage : of the latest failure.
+    person_id: int
+    name: str
+    expires_at: datetime
+
+
+class ShapeRow(Answer):
+    """A row of the table: all that its tile shows. rank : its place in the order, from 0, where a jump asked for it.
+
+    score, model_version : the score that the list is ordered by, and which model's it is; null in other orders.
+    revision_id, author_id, author_name : of its newest confirmed labels. has_confirmed : they are on its present mesh.
+    predicted_version, refined_version : the model version of those labels; null where it has none.
+    cluster : in the embedding. failed_stage : of its latest failure.
     """
 
     id: int
     source_key: str
     state: ShapeState
     mesh_hash: str | None
+    n_faces: int | None
+    revision_id: int | None
     author_id: int | None
+    author_name: str | None
+    has_confirmed: bool
+    predicted_version: int | None
+    refined_version: int | None
     cluster: int | None
     failed_stage: str | None
     score: float | None
     model_version: int | None
+    rank: int | None
+    held_by: list[HolderOut]
 
     @classmethod
-    def of(cls, row: ListedShape) -> "ShapeRow":
+    def of(cls, row: ListedShape, tile: ShapeTile, rank: int | None = None) -> "ShapeRow":
         """The row as it is told."""
         return cls(
             id=row.shape.id,
             source_key=row.shape.source_key,
             state=row.state,
             mesh_hash=row.shape.mesh_hash,
+            n_faces=tile.n_faces,
+            revision_id=tile.revision_id,
             author_id=row.author_id,
+            author_name=tile.author_name,
+            has_confirmed=tile.has_confirmed,
+            predicted_version=tile.predicted_version,
+            refined_version=tile.refined_version,
             cluster=row.cluster,
             failed_stage=row.failed_stage,
             score=row.value,
             model_version=row.model_version,
+            rank=rank,
+            held_by=[HolderOut.model_validate(holder) for holder in tile.holders],
         )
 
 
 class RankedShapes(Answer):
-    """A stretch of an order as it was at `built_at`, from a rank on."""
+    """A stretch of an order, from a rank on. n_shapes : in the whole order, under the same filters.
+
+    built_at : when the order was made, where it is one that is made from time to time; null if it is the present one.
+    """
 
     n_shapes: int
-    built_at: datetime
+    built_at: datetime | None
     items: list[ShapeRow]
+
+
+class CountOut(Answer):
+    """How many shapes meet the filters; in an order by score, those that have it."""
+
+    n_shapes: int
+
+
+class DirectionName(StrEnum):
+    """asc : lowest first. desc : highest first."""
+
+    ASC = "asc"
+    DESC = "desc"
+
+
+class OrderOut(Answer):
+    """An order that the table can be in. `name` goes into `order`. is_queues : shapes are handed out by this score."""
+
+    name: str
+    label: str
+    direction_default: DirectionName
+    is_queues: bool
+
+
+class OrdersOut(Answer):
+    """none and name first, then the scores that exist."""
+
+    items: list[OrderOut]
 
 
 class MeshOut(Answer):

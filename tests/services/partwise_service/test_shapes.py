@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from partwise.store.records import NewFailure, NewRevision, RevisionKind
+from partwise.testing.workspaces import publish_meshes
+from partwise_service.routes import shapes
 
 
 def _keys(answer) -> list[str]:
@@ -40,7 +42,7 @@ def test_pages_follow_each_other_to_the_end(annotator, table) -> None:
 
 
 def test_pages_in_order_of_a_score_follow_each_other(annotator, table) -> None:
-    order = {"order": "entropy", "descending": True, "limit": 2}
+    order = {"order": "entropy", "direction": "desc", "limit": 2}
     first = annotator.get(table, params=order)
     second = annotator.get(table, params={**order, "after": first.json()["next"]})
     assert _keys(first) + _keys(second) == ["sub/c.off", "b.off", "a.off"]
@@ -53,7 +55,7 @@ def test_pages_in_order_of_a_score_follow_each_other(annotator, table) -> None:
     [
         {"after": "x"}, {"after": "1~x"}, {"after": "1~nan"}, {"after": "1~inf"}, {"after": "-1"}, {"after": "9" * 12},
         {"after": "1" * 81}, {"limit": 0}, {"limit": 501}, {"state": "odd"}, {"order": "entropy; DROP TABLE shape"},
-        {"part": -1}, {"cluster": 2**40}, {"descending": "perhaps"},
+        {"part": -1}, {"cluster": 2**40}, {"direction": "perhaps"}, {"failure": "A"},
     ],
 )  # fmt: skip
 def test_a_query_out_of_range_is_refused(annotator, table, query) -> None:
@@ -74,7 +76,9 @@ def test_filters_by_state_part_and_author(annotator, workspace, mugs, table) -> 
 
 def test_filters_by_failure(annotator, workspace, mugs, table) -> None:
     workspace.catalog.record_failure(NewFailure(mugs.ids["a.off"], "refine", "k9", "why"))
-    assert _keys(annotator.get(table, params={"failed_stage": "refine"})) == ["a.off"]
+    for stage in ("refine", "any"):
+        assert _keys(annotator.get(table, params={"failure": stage})) == ["a.off"]
+    assert _keys(annotator.get(table, params={"failure": "mesh"})) == []
 
 
 def test_filters_by_cluster(annotator, workspace, mugs, table) -> None:
@@ -83,13 +87,74 @@ def test_filters_by_cluster(annotator, workspace, mugs, table) -> None:
     assert annotator.get(table).json()["items"][0]["cluster"] == 0
 
 
-def test_jumping_to_a_rank(annotator, workspace, mugs, table) -> None:
-    assert annotator.get(f"{table}/ranked", params={"order": "entropy"}).status_code == 404
+@pytest.mark.parametrize("direction", ["asc", "desc"])
+def test_pages_in_order_of_names_follow_each_other(annotator, table, direction) -> None:
+    order = {"order": "name", "direction": direction, "limit": 2}
+    first = annotator.get(table, params=order)
+    second = annotator.get(table, params={**order, "after": first.json()["next"]})
+    assert _keys(first) + _keys(second) == sorted(["a.off", "b.off", "sub/c.off"], reverse=direction == "desc")
+
+
+def test_a_row_says_all_that_its_tile_shows(annotator, ben_holds_b, workspace, mugs, table) -> None:
+    revision_id = _label(workspace, mugs, "a.off", RevisionKind.HUMAN)
+    a, b, _ = annotator.get(table).json()["items"]
+    assert (a["revision_id"], a["author_name"], a["has_confirmed"], a["n_faces"]) == (revision_id, "eve", True, 4)
+    assert (b["revision_id"], b["author_name"], b["has_confirmed"]) == (None, None, False)
+    assert (a["predicted_version"], a["refined_version"], a["held_by"]) == (1, 1, [])
+    assert [holder["name"] for holder in b["held_by"]] == ["ben"]
+
+
+@pytest.fixture
+def ben_holds_b(workspace, mugs) -> None:
+    workspace.catalog.claim_shape(mugs.ids["b.off"], workspace.catalog.add_person("ben").id, 60)
+
+
+def test_labels_on_a_former_mesh_are_not_shown(annotator, workspace, mugs, table) -> None:
+    _label(workspace, mugs, "a.off", RevisionKind.HUMAN)
+    publish_meshes(workspace, {mugs.ids["a.off"]: mugs.meshes["b.off"]}, "mesh-2")
+    row = annotator.get(table).json()["items"][0]
+    assert (row["has_confirmed"], row["predicted_version"], row["refined_version"]) == (False, None, None)
+
+
+@pytest.mark.parametrize(
+    ("query", "n"),
+    [({}, 3), ({"state": "ready"}, 3), ({"state": "confirmed"}, 0), ({"order": "entropy"}, 3), ({"order": "bald"}, 0)],
+)
+def test_rows_are_counted(annotator, table, query, n) -> None:
+    assert annotator.get(f"{table}/count", params=query).json() == {"n_shapes": n}
+
+
+def test_jumping_to_a_rank(annotator, table) -> None:
+    order = {"order": "entropy", "first_rank": 1, "direction": "desc"}
+    jumped = annotator.get(f"{table}/ranked", params=order)
+    assert (_keys(jumped), jumped.json()["n_shapes"]) == (["b.off", "a.off"], 3)
+    assert [row["rank"] for row in jumped.json()["items"]] == [1, 2]
+    assert jumped.json()["built_at"] is None
+
+
+@pytest.mark.parametrize("order", ["none", "name", "entropy"])
+def test_jumps_take_filters(annotator, workspace, mugs, table, order) -> None:
+    workspace.catalog.set_clusters(mugs.collection_id, {mugs.ids["a.off"]: 3, mugs.ids["sub/c.off"]: 3})
+    jumped = annotator.get(f"{table}/ranked", params={"order": order, "first_rank": 1, "cluster": 3})
+    assert (_keys(jumped), jumped.json()["n_shapes"]) == (["sub/c.off"], 2)
+
+
+def test_jumps_in_a_large_collection_are_into_an_order_made_beforehand(
+    annotator, workspace, mugs, table, monkeypatch
+) -> None:
+    monkeypatch.setattr(shapes, "LIVE_UP_TO", 2)
     ordering = workspace.catalog.begin_ordering(mugs.collection_id, "entropy")
     while workspace.catalog.extend_ordering(ordering.id):
         pass
-    jumped = annotator.get(f"{table}/ranked", params={"order": "entropy", "first_rank": 1, "descending": True})
-    assert (_keys(jumped), jumped.json()["n_shapes"]) == (["b.off", "a.off"], 3)
+    query = {"order": "entropy", "first_rank": 1, "direction": "desc"}
+    jumped = annotator.get(f"{table}/ranked", params=query)
+    assert (_keys(jumped), jumped.json()["built_at"] is None) == (["b.off", "a.off"], False)
+
+
+def test_the_orders_that_exist(annotator, mugs) -> None:
+    orders = annotator.get(f"/collections/{mugs.collection_id}/orders").json()["items"]
+    assert [order["name"] for order in orders] == ["none", "name", "entropy", "entropy_by_area"]
+    assert (orders[2]["label"], orders[2]["direction_default"], orders[2]["is_queues"]) == ("Entropy", "desc", True)
 
 
 def test_a_shape_tells_how_it_came_to_be(annotator, mugs) -> None:

@@ -8,6 +8,8 @@ import pytest
 from sqlalchemy import event
 
 from partwise.store.records import (
+    ANY_STAGE,
+    BY_NAME,
     ListAnchor,
     NewClaim,
     QueueAnchor,
@@ -61,6 +63,13 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "table of an author": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(author_id=1)),
     "table of a failure": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(failed_stage="mesh")),
     "table of a part": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(part_id=1)),
+    "table of any failure": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(failed_stage=ANY_STAGE)),
+    "table by name": lambda catalog, i: catalog.list_shapes(i, order=ShapeOrder(BY_NAME), after=ListAnchor(7)),
+    "jump by id": lambda catalog, i: catalog.shapes_from_rank(i, 7),
+    "jump by name": lambda catalog, i: catalog.shapes_from_rank(i, 7, order=ShapeOrder(BY_NAME)),
+    "jump by score": lambda catalog, i: catalog.shapes_from_rank(i, 7, order=ShapeOrder("entropy")),
+    "scores that exist": lambda catalog, i: catalog.score_names(i),
+    "tiles": lambda catalog, i: catalog.shape_tiles([1, 2]),
     "table by score": lambda catalog, i: catalog.list_shapes(i, order=ShapeOrder("entropy")),
     "ordering": lambda catalog, i: catalog.ordering(i, "entropy"),
 }
@@ -70,7 +79,12 @@ _NOT_SORTED = (
     "table",
     "table of a state",
     "table of a cluster",
+    "table of a part",
     "table by score",
+    "table by name",
+    "jump by id",
+    "jump by name",
+    "jump by score",
     "jobs",
     "events",
 )

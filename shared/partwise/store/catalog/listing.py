@@ -4,7 +4,7 @@ from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from partwise.store.records import ListAnchor, ListedShape, Ordering, ShapeFilter, ShapeOrder
+from partwise.store.records import ListAnchor, ListedShape, Ordering, ShapeFilter, ShapeOrder, ShapeTile
 
 
 class ListingCatalog(Protocol):
@@ -20,6 +20,35 @@ class ListingCatalog(Protocol):
         limit: int = 100,
     ) -> Sequence[ListedShape]:
         """A page of shapes that meet the filter, in order; after the last row of the page before."""
+        ...
+
+    def shapes_from_rank(
+        self,
+        collection_id: int,
+        first_rank: int,
+        *,
+        where: ShapeFilter | None = None,
+        order: ShapeOrder | None = None,
+        limit: int = 100,
+    ) -> Sequence[ListedShape]:
+        """As `list_shapes`, from the shape with this rank on, counted from 0, as they are now.
+
+        Costs a walk over an index up to there; for deep jumps in a large collection there is `ordered_shapes`.
+        """
+        ...
+
+    def count_shapes(
+        self, collection_id: int, *, where: ShapeFilter | None = None, order: ShapeOrder | None = None
+    ) -> int:
+        """How many shapes `list_shapes` has on all its pages together."""
+        ...
+
+    def score_names(self, collection_id: int) -> Sequence[str]:
+        """The scores that any shape of the collection has, by name."""
+        ...
+
+    def shape_tiles(self, shape_ids: Sequence[int]) -> Mapping[int, ShapeTile]:
+        """What it takes to draw these shapes; unknown ids are left out."""
         ...
 
     def listed_shapes(self, shape_ids: Sequence[int], score_name: str | None = None) -> Mapping[int, ListedShape]:
@@ -39,7 +68,7 @@ class ListingCatalog(Protocol):
         ...
 
     def begin_ordering(self, collection_id: int, score_name: str | None = None) -> Ordering:
-        """An ordering without shapes, seen by nobody until it is complete."""
+        """An ordering without shapes, seen by nobody until it is complete. `score_name` as in `ShapeOrder`."""
         ...
 
     def extend_ordering(self, ordering_id: int, *, limit: int = 5_000) -> int:

@@ -5,13 +5,19 @@ from datetime import datetime
 
 from partwise.store.records.shapes import Shape, ShapeState
 
+BY_NAME = "name"
+"""In place of a score's name: the order of source keys."""
+
+ANY_STAGE = "any"
+"""In place of a stage's name: whichever it was."""
+
 
 @dataclass(frozen=True, slots=True)
 class ShapeFilter:
     """What a shape must meet, all of it; None asks for nothing.
 
     part_id : its newest shown labels have this part. author_id : who made those. cluster : in the embedding.
-    failed_stage : the stage that failed for it.
+    failed_stage : the stage that failed for it, `ANY_STAGE` for whichever.
     """
 
     state: ShapeState | None = None
@@ -23,7 +29,10 @@ class ShapeFilter:
 
 @dataclass(frozen=True, slots=True)
 class ShapeOrder:
-    """By the score of this name, ties by id, shapes without a score left out; by id where the name is None."""
+    """By the score of this name, ties by id, shapes without a score left out.
+
+    By id where the name is None, by source key where it is `BY_NAME`.
+    """
 
     score_name: str | None = None
     descending: bool = False
@@ -59,10 +68,38 @@ class ListedShape:
 
 
 @dataclass(frozen=True, slots=True)
+class Holder:
+    """Who has a shape in their hands. `expires_at` may be past: then it is theirs until somebody else claims it."""
+
+    person_id: int
+    name: str
+    expires_at: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeTile:
+    """What it takes to draw a shape's tile, beside its row of the table.
+
+    n_faces : of its present mesh. revision_id, author_name : of its newest shown labels.
+    has_confirmed : those are on its present mesh.
+    predicted_version, refined_version : the model version of its predicted and its refined labels, None where it has
+        none on its present mesh.
+    """
+
+    n_faces: int | None
+    revision_id: int | None
+    author_name: str | None
+    has_confirmed: bool
+    predicted_version: int | None
+    refined_version: int | None
+    holders: tuple[Holder, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Ordering:
     """Dense ranks 0 … n_shapes − 1 of a collection's shapes in an order, as it was at `built_at`.
 
-    They are ascending; rank r of the descending order is n_shapes − 1 − r. `score_name` None is the order of ids.
+    They are ascending; rank r of the descending order is n_shapes − 1 − r. `score_name` as in `ShapeOrder`.
     """
 
     id: int

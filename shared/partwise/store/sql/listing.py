@@ -7,7 +7,16 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Row, Select, and_, bindparam, exists, func, select, tuple_, update
 
 from partwise.store import tables as t
-from partwise.store.records import ListAnchor, ListedShape, Shape, ShapeFilter, ShapeOrder, ShapeState
+from partwise.store.records import (
+    ANY_STAGE,
+    BY_NAME,
+    ListAnchor,
+    ListedShape,
+    Shape,
+    ShapeFilter,
+    ShapeOrder,
+    ShapeState,
+)
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import batches
 
@@ -29,16 +38,31 @@ def list_shapes(
         query = _by_id(collection_id, where, order.descending, after)
     else:
         few = _matches_if_few(connection, collection_id, where)
-        query = _by_score(collection_id, where, order.score_name, order.descending, after, few)
+        if order.score_name == BY_NAME:
+            query = _by_name(collection_id, where, order.descending, after, few)
+        else:
+            query = _by_score(collection_id, where, order.score_name, order.descending, after, few)
     return [_listed(row) for row in connection.execute(query.limit(limit))]
 
 
 def _by_id(collection_id: int, where: ShapeFilter, is_descending: bool, after: ListAnchor | None) -> Select[Any]:
     shape_id = t.shape_facet.c.shape_id
-    query = _rows(None).where(*_conditions(collection_id, where))
+    query = _of_part(_rows(None), where).where(*_conditions(collection_id, where))
     if after is not None:
         query = query.where(shape_id < after.shape_id if is_descending else shape_id > after.shape_id)
     return query.order_by(shape_id.desc() if is_descending else shape_id)
+
+
+def _by_name(
+    collection_id: int, where: ShapeFilter, is_descending: bool, after: ListAnchor | None, few: Sequence[int] | None
+) -> Select[Any]:
+    key = t.shape.c.source_key
+    query = _rows(None).where(t.shape.c.collection_id == collection_id)
+    query = query.where(*_conditions(None, where)) if few is None else query.where(t.shape.c.id.in_(few))
+    if after is not None:  # a source key never changes: the anchor's id says it
+        last = select(t.shape.c.source_key).where(t.shape.c.id == after.shape_id).scalar_subquery()
+        query = query.where(key < last if is_descending else key > last)
+    return query.order_by(key.desc() if is_descending else key)
 
 
 def _by_score(
@@ -63,8 +87,8 @@ def _matches_if_few(connection: Connection, collection_id: int, where: ShapeFilt
     """Ids of all that meet the filter, None if they are many or nothing is filtered."""
     if where == ShapeFilter():
         return None
-    query = select(t.shape_facet.c.shape_id).where(*_conditions(collection_id, where)).limit(_FEW + 1)
-    found = connection.execute(query).scalars().all()
+    query = _of_part(select(t.shape_facet.c.shape_id), where).where(*_conditions(collection_id, where))
+    found = connection.execute(query.limit(_FEW + 1)).scalars().all()
     return None if len(found) > _FEW else found
 
 
@@ -77,9 +101,11 @@ def _conditions(collection_id: int | None, where: ShapeFilter) -> list[ColumnEle
         conditions.append(facet.author_id == where.author_id)
     if where.cluster is not None:
         conditions.append(facet.cluster == where.cluster)
-    if where.failed_stage is not None:
+    if where.failed_stage == ANY_STAGE:
+        conditions.append(facet.failed_stage.is_not(None))
+    elif where.failed_stage is not None:
         conditions.append(facet.failed_stage == where.failed_stage)
-    if where.part_id is not None:
+    if where.part_id is not None and collection_id is None:
         of_shape = and_(
             t.head_part.c.collection_id == facet.collection_id,
             t.head_part.c.part_id == where.part_id,
@@ -87,6 +113,15 @@ def _conditions(collection_id: int | None, where: ShapeFilter) -> list[ColumnEle
         )
         conditions.append(exists().where(of_shape))
     return conditions
+
+
+def _of_part(query: Select[Any], where: ShapeFilter) -> Select[Any]:
+    """Joined with the shapes that have the part: they are found in the part's own index, however few they are."""
+    if where.part_id is None:
+        return query
+    facet, part = t.shape_facet.c, t.head_part.c
+    is_same = and_(part.shape_id == facet.shape_id, part.collection_id == facet.collection_id)
+    return query.join(t.head_part, is_same).where(part.part_id == where.part_id)
 
 
 def _rows(score_name: str | None) -> Select[Any]:
@@ -127,6 +162,68 @@ def listed_shapes(connection: Connection, shape_ids: Sequence[int], score_name: 
             scored = connection.execute(_rows(score_name).where(t.score.c.shape_id.in_(some)))
             found.update({row.id: _listed(row) for row in scored})
     return found
+
+
+def shapes_from_rank(
+    connection: Connection,
+    collection_id: int,
+    where: ShapeFilter,
+    order: ShapeOrder,
+    first_rank: int,
+    limit: int,
+) -> list[ListedShape]:
+    schema_version(connection, collection_id)
+    few = None if order.score_name is None else _matches_if_few(connection, collection_id, where)
+    query = _ids(collection_id, where, order, few).offset(first_rank).limit(limit)
+    ids = connection.execute(query).scalars().all()
+    score_name = None if order.score_name == BY_NAME else order.score_name
+    rows = listed_shapes(connection, ids, score_name)
+    return [rows[shape_id] for shape_id in ids]
+
+
+def count_shapes(connection: Connection, collection_id: int, where: ShapeFilter, order: ShapeOrder) -> int:
+    schema_version(connection, collection_id)
+    few = None
+    if order.score_name in (None, BY_NAME):
+        ids = _ids(collection_id, where, ShapeOrder(), None)
+    else:
+        few = _matches_if_few(connection, collection_id, where)
+        ids = _ids(collection_id, where, order, few)
+    counted = ids.order_by(None).subquery()
+    return connection.execute(select(func.count()).select_from(counted)).scalar_one()
+
+
+def _ids(collection_id: int, where: ShapeFilter, order: ShapeOrder, few: Sequence[int] | None) -> Select[Any]:
+    """Ids alone: where nothing is filtered they are read from an index and no row is."""
+    facet, is_filtered = t.shape_facet.c, where != ShapeFilter()
+    columns: tuple[ColumnElement[Any], ...]
+    if order.score_name is None:
+        query, columns = select(facet.shape_id), (facet.shape_id,)
+        query = _of_part(query, where).where(*_conditions(collection_id, where))
+    else:
+        if order.score_name == BY_NAME:
+            shape_id, columns = t.shape.c.id, (t.shape.c.source_key,)
+            query = select(shape_id).where(t.shape.c.collection_id == collection_id)
+        else:
+            shape_id, columns = t.score.c.shape_id, (t.score.c.value, t.score.c.shape_id)
+            query = select(shape_id).where(t.score.c.collection_id == collection_id, t.score.c.name == order.score_name)
+        if few is not None:
+            query = query.where(shape_id.in_(few))
+        elif is_filtered:
+            query = query.join(t.shape_facet, facet.shape_id == shape_id).where(*_conditions(None, where))
+    return query.order_by(*(column.desc() if order.descending else column.asc() for column in columns))
+
+
+def score_names(connection: Connection, collection_id: int) -> list[str]:
+    schema_version(connection, collection_id)
+    names: list[str] = []
+    following = select(func.min(t.score.c.name)).where(t.score.c.collection_id == collection_id)
+    while True:  # from name to name in the index, not over all scores
+        query = following.where(t.score.c.name > names[-1]) if names else following
+        name = connection.execute(query).scalar()
+        if name is None:
+            return names
+        names.append(name)
 
 
 def set_clusters(connection: Connection, collection_id: int, clusters: Mapping[int, int]) -> None:

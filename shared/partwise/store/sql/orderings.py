@@ -8,7 +8,7 @@ from sqlalchemy import Connection, Row, delete, exists, func, insert, literal, s
 
 from partwise.errors import NotFoundError
 from partwise.store import tables as t
-from partwise.store.records import Ordering
+from partwise.store.records import BY_NAME, Ordering
 from partwise.store.sql.collections import schema_version
 
 _COLUMNS = tuple(column for column in t.ordering.c if column.name not in ("is_complete", "last_value", "last_id"))
@@ -49,6 +49,13 @@ def _next(connection: Connection, known: Row[Any], limit: int) -> Sequence[Row[A
         by_id = select(facet.shape_id, literal(0.0).label("value")).where(facet.collection_id == known.collection_id)
         by_id = by_id.where(facet.shape_id > (known.last_id or 0))
         return list(connection.execute(by_id.order_by(facet.shape_id).limit(limit)))
+    if known.score_name == BY_NAME:
+        key = t.shape.c.source_key
+        by_name = select(t.shape.c.id.label("shape_id"), literal(0.0).label("value"))
+        by_name = by_name.where(t.shape.c.collection_id == known.collection_id)
+        if known.last_id is not None:
+            by_name = by_name.where(key > select(key).where(t.shape.c.id == known.last_id).scalar_subquery())
+        return list(connection.execute(by_name.order_by(key).limit(limit)))
     score = t.score.c
     of_score = (score.collection_id == known.collection_id) & (score.name == known.score_name)
     by_score = select(score.shape_id, score.value).where(of_score).order_by(score.value, score.shape_id).limit(limit)

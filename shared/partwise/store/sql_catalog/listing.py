@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import listing, orderings
+from partwise.store.sql import listing, orderings, tiles
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -23,6 +23,34 @@ class SqlListingCatalog(SqlBase):
             return listing.list_shapes(
                 connection, collection_id, where or r.ShapeFilter(), order or r.ShapeOrder(), after, limit
             )
+
+    def shapes_from_rank(
+        self,
+        collection_id: int,
+        first_rank: int,
+        *,
+        where: r.ShapeFilter | None = None,
+        order: r.ShapeOrder | None = None,
+        limit: int = 100,
+    ) -> Sequence[r.ListedShape]:
+        with reading(self._engine) as connection:
+            return listing.shapes_from_rank(
+                connection, collection_id, where or r.ShapeFilter(), order or r.ShapeOrder(), first_rank, limit
+            )
+
+    def count_shapes(
+        self, collection_id: int, *, where: r.ShapeFilter | None = None, order: r.ShapeOrder | None = None
+    ) -> int:
+        with reading(self._engine) as connection:
+            return listing.count_shapes(connection, collection_id, where or r.ShapeFilter(), order or r.ShapeOrder())
+
+    def score_names(self, collection_id: int) -> Sequence[str]:
+        with reading(self._engine) as connection:
+            return listing.score_names(connection, collection_id)
+
+    def shape_tiles(self, shape_ids: Sequence[int]) -> Mapping[int, r.ShapeTile]:
+        with reading(self._engine) as connection:
+            return tiles.shape_tiles(connection, shape_ids)
 
     def listed_shapes(self, shape_ids: Sequence[int], score_name: str | None = None) -> Mapping[int, r.ListedShape]:
         with reading(self._engine) as connection:

@@ -8,17 +8,31 @@ import pytest
 from partwise.errors import NotFoundError
 from partwise.store.catalog import Catalog
 from partwise.store.records import (
+    ANY_STAGE,
+    BY_NAME,
     Collection,
+    Holder,
     ListAnchor,
     NewFailure,
     NewScore,
+    NewStageRun,
     RevisionKind,
     ShapeFilter,
     ShapeOrder,
     ShapeState,
 )
 from partwise.store.reviews import NewReview, ReviewReason
-from partwise.testing.catalog.samples import add_collection, label, publish, publish_mesh, save_model
+from partwise.testing.catalog.samples import (
+    N_FACES,
+    add_collection,
+    claim,
+    label,
+    mesh_hash,
+    publish,
+    publish_mesh,
+    ready_shapes,
+    save_model,
+)
 from partwise.testing.expect import raises
 
 VALUES = (0.5, 0.9, 0.5, 0.1)
@@ -56,6 +70,61 @@ class ListingConformance:
         assert _ids(catalog, collection, ShapeFilter(), ShapeOrder("entropy", descending=True)) == [b, c, a, d]
         assert _ids(catalog, collection, ShapeFilter(), ShapeOrder("bald")) == []
 
+    @pytest.mark.parametrize("descending", [False, True])
+    def test_pages_in_order_of_names(self, catalog: Catalog, descending: bool) -> None:
+        collection, shape_ids = add_collection(catalog, 11)
+        by_name = sorted(shape_ids, key=lambda i: f"{shape_ids.index(i)}.off", reverse=descending)
+        assert _ids(catalog, collection, ShapeFilter(), ShapeOrder(BY_NAME, descending)) == by_name
+
+    @pytest.mark.parametrize("name", [None, BY_NAME, "entropy"])
+    @pytest.mark.parametrize("descending", [False, True])
+    def test_ranks_count_as_the_pages_go(self, catalog: Catalog, name: str | None, descending: bool) -> None:
+        collection, shape_ids = _scored(catalog)
+        catalog.set_clusters(collection.id, dict.fromkeys(shape_ids[1:], 1))
+        order = ShapeOrder(name, descending)
+        for where in (ShapeFilter(), ShapeFilter(cluster=1)):
+            listed = _ids(catalog, collection, where, order)
+            assert catalog.count_shapes(collection.id, where=where, order=order) == len(listed)
+            for rank in range(len(listed) + 1):
+                found = catalog.shapes_from_rank(collection.id, rank, where=where, order=order, limit=2)
+                assert [row.shape.id for row in found] == listed[rank : rank + 2]
+
+    def test_scores_that_exist(self, catalog: Catalog) -> None:
+        collection, (a, b, *_) = _scored(catalog)
+        assert catalog.score_names(collection.id) == ["entropy"]
+        model = save_model(catalog, collection.id)
+        catalog.record_done([], [NewScore(i, model.id, "bald", 0.5) for i in (a, b)])
+        assert catalog.score_names(collection.id) == ["bald", "entropy"]
+
+    def test_tiles_say_whose_the_labels_are_and_who_is_at_them(self, catalog: Catalog) -> None:
+        collection, (a, b) = ready_shapes(catalog, 2)
+        revision = label(catalog, a)
+        ben = catalog.add_person("ben")
+        lease = claim(catalog, collection, ben)
+        assert lease.shape_id == b
+        tiles = catalog.shape_tiles([a, b, 99])
+        assert tiles.keys() == {a, b}
+        assert (tiles[a].revision_id, tiles[a].author_name, tiles[a].has_confirmed) == (revision.id, "ann", True)
+        assert (tiles[a].n_faces, tiles[a].holders) == (N_FACES, ())
+        assert tiles[b].holders == (Holder(ben.id, "ben", lease.expires_at),)
+
+    def test_tiles_say_which_model_labelled_the_present_mesh(self, catalog: Catalog) -> None:
+        _, (a, b) = ready_shapes(catalog, 2)
+        about = {"mesh_hash": mesh_hash(a), "model_version": 3}
+        catalog.record_done([NewStageRun(a, "evaluate", "e", summary=about)])
+        catalog.record_done([NewStageRun(b, "refine", "r", summary={"mesh_hash": "another", "model_version": 3})])
+        tiles = catalog.shape_tiles([a, b])
+        assert (tiles[a].predicted_version, tiles[a].refined_version) == (3, None)
+        assert (tiles[b].predicted_version, tiles[b].refined_version) == (None, None)
+
+    def test_orderings_by_name(self, catalog: Catalog) -> None:
+        collection, shape_ids = add_collection(catalog, 11)
+        begun = catalog.begin_ordering(collection.id, BY_NAME)
+        while catalog.extend_ordering(begun.id, limit=4):
+            pass
+        by_name = sorted(shape_ids, key=lambda i: f"{shape_ids.index(i)}.off")
+        assert catalog.ordered_shapes(begun.id, 0) == by_name
+
     def test_a_row_says_what_the_table_shows(self, catalog: Catalog) -> None:
         collection, shape_ids = _scored(catalog)
         (row,) = catalog.list_shapes(collection.id, order=ShapeOrder("entropy", descending=True), limit=1)
@@ -77,6 +146,8 @@ class ListingConformance:
             ShapeFilter(state=ShapeState.READY): [b, c],
             ShapeFilter(state=ShapeState.NEW): [e],
             ShapeFilter(failed_stage="mesh"): [d],
+            ShapeFilter(failed_stage=ANY_STAGE): [d],
+            ShapeFilter(part_id=1, state=ShapeState.CONFIRMED): [a],
             ShapeFilter(author_id=author): [a],
             ShapeFilter(part_id=1): [a],
             ShapeFilter(part_id=2): [],
@@ -85,6 +156,7 @@ class ListingConformance:
         }
         for where, ids in expected.items():
             assert _ids(catalog, collection, where) == ids
+            assert _ids(catalog, collection, where, ShapeOrder(BY_NAME)) == ids
             assert _ids(catalog, collection, where, ShapeOrder("entropy")) == sorted(
                 set(ids) - {e}, key=lambda i: (VALUES[(a, b, c, d).index(i)], i)
             )
