@@ -1,0 +1,165 @@
+import { type KeyboardEvent, type ReactNode, useId, useRef, useState } from "react";
+import { classes } from "./classes";
+import styles from "./Menu.module.css";
+import { type Alignment, placeBeside } from "./placement";
+
+export interface MenuProps {
+  /** The button's accessible name. */
+  label: string;
+  /** What the button shows; its name if left out. */
+  trigger?: ReactNode;
+  /** MenuItem, MenuChoice, MenuHeading and MenuLine. */
+  children: ReactNode;
+  alignment?: Alignment;
+  /** Of the button, in place of its own looks. */
+  className?: string | undefined;
+  isDisabled?: boolean;
+}
+
+const ITEMS = '[role^="menuitem"]:not(:disabled, [aria-disabled="true"])';
+
+/** A button with a menu: a native popover, closed by Escape, a click elsewhere, or a choice. */
+export function Menu({
+  label,
+  trigger,
+  children,
+  alignment = "start",
+  className,
+  isDisabled = false,
+}: MenuProps) {
+  const id = useId();
+  const button = useRef<HTMLButtonElement>(null);
+  const menu = useRef<HTMLDivElement>(null);
+  const [isOpen, setOpen] = useState(false);
+  const items = () => [...(menu.current?.querySelectorAll<HTMLElement>(ITEMS) ?? [])];
+
+  const onKeyDown = (event: KeyboardEvent) => {
+    const next = nextFocus(items(), event.key);
+    if (event.key === "Tab") menu.current?.hidePopover();
+    if (!next) return;
+    event.preventDefault();
+    event.stopPropagation();
+    next.focus();
+  };
+  return (
+    <>
+      <button
+        ref={button}
+        type="button"
+        className={className ?? styles.trigger}
+        aria-label={trigger === undefined ? undefined : label}
+        aria-haspopup="menu"
+        aria-expanded={isOpen}
+        popoverTarget={id}
+        disabled={isDisabled}
+      >
+        {trigger ?? label}
+      </button>
+      <div
+        ref={menu}
+        id={id}
+        popover="auto"
+        role="menu"
+        tabIndex={-1}
+        aria-label={label}
+        className={styles.menu}
+        onToggle={(event) => {
+          const opened = event.newState === "open";
+          setOpen(opened);
+          if (!opened || !button.current || !menu.current) return;
+          placeBeside(menu.current, button.current, alignment);
+          (items().find((item) => item.ariaChecked === "true") ?? items()[0])?.focus();
+        }}
+        onKeyDown={onKeyDown}
+        onClick={(event) => (event.target as Element).closest(ITEMS) && menu.current?.hidePopover()}
+      >
+        {isOpen && children}
+      </div>
+    </>
+  );
+}
+
+function nextFocus(items: readonly HTMLElement[], key: string): HTMLElement | undefined {
+  const at = items.findIndex((item) => item.matches(":focus"));
+  if (key === "ArrowDown") return items[(at + 1) % items.length];
+  if (key === "ArrowUp") return items.at(at <= 0 ? -1 : at - 1);
+  if (key === "Home") return items[0];
+  if (key === "End") return items.at(-1);
+  if (key.length !== 1 || key === " ") return undefined;
+  const after = [...items.slice(at + 1), ...items.slice(0, at + 1)];
+  return after.find((item) => item.textContent?.trim().toLowerCase().startsWith(key.toLowerCase()));
+}
+
+export interface MenuItemProps {
+  children: ReactNode;
+  onSelect: () => void;
+  icon?: ReactNode;
+  shortcut?: string;
+  isDisabled?: boolean;
+  tone?: "normal" | "danger";
+}
+
+export function MenuItem({
+  children,
+  onSelect,
+  icon,
+  shortcut,
+  isDisabled = false,
+  tone = "normal",
+}: MenuItemProps) {
+  return (
+    <button
+      type="button"
+      role="menuitem"
+      tabIndex={-1}
+      className={classes(styles.item, tone === "danger" && styles.danger)}
+      disabled={isDisabled}
+      onClick={onSelect}
+    >
+      <span className={styles.mark}>{icon}</span>
+      <span className={styles.words}>{children}</span>
+      {shortcut !== undefined && <kbd>{shortcut}</kbd>}
+    </button>
+  );
+}
+
+export interface MenuChoiceProps {
+  children: ReactNode;
+  isChecked: boolean;
+  onSelect: () => void;
+  /** Several may be chosen. */
+  isMultiple?: boolean;
+  icon?: ReactNode;
+}
+
+export function MenuChoice({ children, isChecked, onSelect, isMultiple = false, icon }: MenuChoiceProps) {
+  return (
+    // biome-ignore lint/a11y/useAriaPropsSupportedByRole: both roles that it may have support aria-checked
+    <button
+      type="button"
+      role={isMultiple ? "menuitemcheckbox" : "menuitemradio"}
+      aria-checked={isChecked}
+      tabIndex={-1}
+      className={styles.item}
+      onClick={onSelect}
+    >
+      <span className={styles.mark}>{icon}</span>
+      <span className={styles.words}>{children}</span>
+      <span className={styles.tick} aria-hidden="true">
+        {isChecked ? "✓" : ""}
+      </span>
+    </button>
+  );
+}
+
+export function MenuHeading({ children }: { children: ReactNode }) {
+  return (
+    <p className={styles.heading} role="presentation">
+      {children}
+    </p>
+  );
+}
+
+export function MenuLine() {
+  return <hr className={styles.line} />;
+}

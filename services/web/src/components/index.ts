@@ -1,0 +1,21 @@
+/** The building blocks of every room: native elements, tokens for all colours and sizes, accessible by default. */
+export { Badge, type Tone } from "./Badge";
+export { Button, type ButtonProps, type ButtonVariant } from "./Button";
+export { Checkbox, type CheckboxProps } from "./Checkbox";
+export { CopyButton } from "./CopyButton";
+export { classes } from "./classes";
+export { Dialog, type DialogProps } from "./Dialog";
+export { Field, type FieldControl, type FieldProps } from "./Field";
+export { IconButton, type IconButtonProps } from "./IconButton";
+export { Input, type InputProps } from "./Input";
+export { Menu, MenuChoice, MenuHeading, MenuItem, MenuLine, type MenuProps } from "./Menu";
+export { Notice, type NoticeKind, type NoticeProps } from "./Notice";
+export { Progress } from "./Progress";
+export { Segmented, type SegmentedOption, type SegmentedProps } from "./Segmented";
+export { Select, type SelectOption, type SelectProps } from "./Select";
+export { Skeleton } from "./Skeleton";
+export { Slider, type SliderProps } from "./Slider";
+export { Spinner } from "./Spinner";
+export { Time, type TimeProps } from "./Time";
+export { type ShowToast, type Toast, ToastProvider, useToast } from "./Toasts";
+export { Tooltip } from "./Tooltip";
