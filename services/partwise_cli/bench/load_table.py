@@ -42,8 +42,8 @@ def filters(workspace: LoadedWorkspace) -> dict[str, Draw]:
         "author=any": lambda rng: {"author": int(rng.choice(authors))},
         "cluster=0": _fixed({"cluster": 0}),
         "cluster=any": lambda rng: {"cluster": int(rng.integers(N_CLUSTERS))},
-        f"failed_stage={REMESH}": _fixed({"failed_stage": REMESH}),
-        f"failed_stage={DESCRIBE}": _fixed({"failed_stage": DESCRIBE}),
+        f"failure={REMESH}": _fixed({"failure": REMESH}),
+        f"failure={DESCRIBE}": _fixed({"failure": DESCRIBE}),
         "cluster=any, state=ready": lambda rng: {"cluster": int(rng.integers(N_CLUSTERS)), "state": "ready"},
         "cluster=any, state=confirmed": lambda rng: {"cluster": int(rng.integers(N_CLUSTERS)), "state": "confirmed"},
         "cluster=0, part=1": _fixed({"cluster": 0, "part": 1}),
@@ -62,7 +62,7 @@ def orders() -> dict[str, Query]:
     """Every order and direction."""
     named: dict[str, Query] = {"id": {}} | {name.value: {"order": name.value} for name in ScoreName}
     return {
-        f"{name} {'down' if descending else 'up'}": {**query, "descending": str(descending).lower()}
+        f"{name} {'down' if descending else 'up'}": {**query, "direction": "desc" if descending else "asc"}
         for name, query in named.items()
         for descending in (False, True)
     }

@@ -33,7 +33,7 @@ def shape_tiles(connection: Connection, shape_ids: Sequence[int]) -> dict[int, S
 
 
 def _tile(
-    row: Row[Any],
+    row: Row[Any, Any, Any],
     head: LabelRevision | None,
     names: dict[int, str],
     versions: dict[tuple[int, str], tuple[str, int]],
