@@ -73,7 +73,9 @@ def read_archive(
     bounds = limits or ArchiveLimits()
     if not is_archive(path.name):
         raise FileFormatError(f"an archive's name must end in {', '.join(ARCHIVE_SUFFIXES)} but is {path.name!a}")
-    open_members = zip_members if path.name.lower().endswith(".zip") else tar_members
+    open_members: Callable[[Path, ArchiveLimits], Iterator[Member]] = (
+        zip_members if path.name.lower().endswith(".zip") else tar_members
+    )
     seen: set[str] = set()
     n_bytes = 0
     for n_members, member in enumerate(open_members(path, bounds), start=1):

@@ -3,10 +3,10 @@
 import hashlib
 import logging
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import islice
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path, PurePosixPath
 
 from partwise.errors import FileFormatError, NotFoundError
 from partwise.io.read import MESH_SUFFIXES, read_bytes
@@ -37,6 +37,11 @@ class IngestReport:
     n_changed: int
     refused: tuple[RefusedFile, ...]
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no mesh file came at all."""
+        return not (self.n_added or self.n_unchanged or self.n_changed or self.refused)
+
 
 def source_object(source_hash: str, source_suffix: str) -> str:
     """Where the array store keeps an ingested file: by content, so that copies share one object."""
@@ -57,30 +62,73 @@ def ingest_folder(
     """
     if not folder.is_dir():
         raise NotFoundError(f"ingest needs a folder but {folder} is not one; check the path")
-    counts = dict.fromkeys(IngestOutcome, 0)
-    refused: list[RefusedFile] = []
     files = list(_outside(mesh_files(folder), workspace.array_url))
-    n_seen = 0
-    for paths in _batches(iter(files)):
-        new_shapes: list[NewShape] = []
-        for path in paths:
-            key = path.relative_to(folder).as_posix()
-            try:
-                new_shapes.append(_copy(workspace, path, key))
-            except FileFormatError as error:
-                refused.append(RefusedFile(key, str(error)))
-            n_seen += 1
-            on_progress(RunProgress(n_seen - len(refused), len(refused), len(files)))
-        for ingested in workspace.catalog.add_shapes(collection.id, new_shapes):
-            counts[ingested.outcome] += 1
+    intake = Intake(workspace, collection, on_progress, len(files))
+    for path in files:
+        intake.take(path.relative_to(folder).as_posix(), partial(read_bytes, path))
+    report = intake.report()
+    if report.is_empty:
+        raise NotFoundError(f"ingest needs mesh files ({', '.join(sorted(MESH_SUFFIXES))}) but {folder} has none")
+    return report
+
+
+@dataclass(slots=True)
+class Intake:
+    """Takes files one after the other, and commits their rows in batches.
+
+    n_planned : files that will come, 0 if nobody knows.
+    """
+
+    workspace: Workspace
+    collection: Collection
+    on_progress: OnRunProgress = lambda _: None
+    n_planned: int = 0
+    _counts: dict[IngestOutcome, int] = field(default_factory=lambda: dict.fromkeys(IngestOutcome, 0))
+    _refused: list[RefusedFile] = field(default_factory=list)
+    _batch: list[NewShape] = field(default_factory=list)
+    _n_seen: int = 0
+    _n_bad: int = 0
+
+    def take(self, key: str, read: Callable[[], bytes]) -> None:
+        """Copies a file, unless reading it, or its content or name, is refused."""
+        try:
+            self._batch.append(_copy(self.workspace, key, read))
+        except FileFormatError as error:
+            self.refuse(key, str(error))
+            return
+        self._tell()
+        if len(self._batch) >= BATCH:
+            self._commit()
+
+    def refuse(self, key: str, reason: str) -> None:
+        """Puts a file on the list of those that were not taken."""
+        self._refused.append(RefusedFile(key, reason))
+        self._n_bad += 1
+        self._tell()
+
+    def report(self) -> IngestReport:
+        """What became of all files, once the last is committed."""
+        self._commit()
+        counts = self._counts
+        return IngestReport(
+            counts[IngestOutcome.ADDED],
+            counts[IngestOutcome.UNCHANGED],
+            counts[IngestOutcome.CHANGED],
+            tuple(self._refused),
+        )
+
+    def _tell(self) -> None:
+        self._n_seen += 1
+        n_total = max(self.n_planned, self._n_seen)
+        self.on_progress(RunProgress(self._n_seen - self._n_bad, self._n_bad, n_total))
+
+    def _commit(self) -> None:
+        for ingested in self.workspace.catalog.add_shapes(self.collection.id, self._batch):
+            self._counts[ingested.outcome] += 1
             if ingested.outcome is IngestOutcome.CONFLICT:
                 why = "a labelled shape's file must stay as it is but has changed; ingest it under another name"
-                refused.append(RefusedFile(ingested.source_key, f"{ingested.source_key}: {why}"))
-    if not refused and not any(counts.values()):
-        raise NotFoundError(f"ingest needs mesh files ({', '.join(sorted(MESH_SUFFIXES))}) but {folder} has none")
-    return IngestReport(
-        counts[IngestOutcome.ADDED], counts[IngestOutcome.UNCHANGED], counts[IngestOutcome.CHANGED], tuple(refused)
-    )
+                self._refused.append(RefusedFile(ingested.source_key, f"{ingested.source_key}: {why}"))
+        self._batch = []
 
 
 def mesh_files(folder: Path) -> Iterator[Path]:
@@ -107,21 +155,16 @@ def _outside(paths: Iterator[Path], array_url: str) -> Iterator[Path]:
     return (path for path in paths if "://" in root or not path.resolve().is_relative_to(root))
 
 
-def _batches(paths: Iterator[Path]) -> Iterator[list[Path]]:
-    while batch := list(islice(paths, BATCH)):
-        yield batch
-
-
-def _copy(workspace: Workspace, path: Path, key: str) -> NewShape:
+def _copy(workspace: Workspace, key: str, read: Callable[[], bytes]) -> NewShape:
     if not key.isprintable():  # also what is not UTF-8, which the catalog could not hold
         raise FileFormatError(f"{key!a}: a file's name must be printable UTF-8; rename the file")
     try:
-        data = read_bytes(path)
+        data = read()
     except FileFormatError as error:
         raise FileFormatError(f"{key}: {error}") from error
     if not data.strip():
         raise FileFormatError(f"{key}: a mesh file must have content but is empty; was the download cut off?")
-    new_shape = NewShape(key, hashlib.sha256(data).hexdigest(), path.suffix.lower())
+    new_shape = NewShape(key, hashlib.sha256(data).hexdigest(), PurePosixPath(key).suffix.lower())
     target = source_object(new_shape.source_hash, new_shape.source_suffix)
     if not workspace.arrays.exists(target):
         workspace.arrays.put_bytes(target, data)

@@ -3,13 +3,13 @@
 import gzip
 import io
 import pickle
-import random
 import stat
 import struct
 import tarfile
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from partwise.errors import FileFormatError, ParameterError
@@ -260,7 +260,7 @@ class TestTar:
         with gzip.open(path, "wb", compresslevel=1) as made:
             made.write(header.tobuf())
             for _ in range(4):  # of random bytes, which do not give it away by how far they expand
-                made.write(random.Random(0).randbytes(MIB))
+                made.write(np.random.default_rng(0).bytes(MIB))
         with pytest.raises(ArchiveError, match="header may have a mebibyte"):
             read(path)
 
