@@ -38,7 +38,7 @@ def ending_of(error: Exception) -> Ending:
         return Ending(STORE_ERROR, _of_the_system(error))
     if isinstance(error, MemoryError):
         return Ending(FAULT, "the machine ran out of memory; close other programs, or set n_actors lower in [workers]")
-    if _is_of_ray(error):
+    if is_of_ray(error):
         return Ending(
             STORE_ERROR, f"Ray must work but: {_first_line(error)}; look at `partwise doctor`, then run again"
         )
@@ -53,7 +53,8 @@ def _of_the_system(error: OSError) -> str:
     return f"{where}must be usable but: {error.strerror or _first_line(error)}; is it there, and may you use it?"
 
 
-def _is_of_ray(error: Exception) -> bool:
+def is_of_ray(error: Exception) -> bool:
+    """Whether Ray raised it."""
     exceptions = sys.modules.get("ray.exceptions")  # never loaded for this: commands without Ray stay quick
     return exceptions is not None and isinstance(error, exceptions.RayError)
 

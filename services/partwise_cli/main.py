@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from partwise import __version__
-from partwise_cli.commands import bench, collect, demo, doctor, label, model, rank, segment, service, simulate
+from partwise_cli.commands import bench, collect, demo, doctor, label, model, rank, segment, service, simulate, work
 from partwise_cli.failures import EXIT_CODES, INTERRUPTED, ending_of
 from partwise_cli.logs import configure_logging
 from partwise_cli.terminal import error_line
@@ -21,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
-for module in (collect, label, segment, model, rank, service, simulate, demo, bench, doctor):
+for module in (collect, label, segment, model, rank, service, work, simulate, demo, bench, doctor):
     module.register(app)
 
 

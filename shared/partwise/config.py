@@ -101,6 +101,27 @@ class WorkersConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class JobsConfig:
+    """How `partwise work` takes up jobs.
+
+    poll_s : seconds between two looks for work. pulse_s : between two signs of life of a job that is worked on.
+    lost_after_s : of silence after which another worker begins a job again; 5 pulses or more.
+    rank_every_s : between two rankings of the queue while shapes are evaluated.
+    """
+
+    poll_s: float = 1.0
+    pulse_s: float = 2.0
+    lost_after_s: float = 60.0
+    rank_every_s: float = 15.0
+
+    def __post_init__(self) -> None:
+        for name in ("poll_s", "pulse_s", "rank_every_s"):
+            _require(getattr(self, name) > 0, name, getattr(self, name), "more than 0")
+        rule = f"5 × pulse_s ({5 * self.pulse_s:g}) or more"
+        _require(self.lost_after_s >= 5 * self.pulse_s, "lost_after_s", self.lost_after_s, rule)
+
+
+@dataclass(frozen=True, slots=True)
 class MeshConfig:
     """Which files are taken. `max_faces` bounds the time and memory of reading and remeshing one."""
 
@@ -145,6 +166,7 @@ class Config:
 
     stores: StoresConfig = field(default_factory=StoresConfig)
     workers: WorkersConfig = field(default_factory=WorkersConfig)
+    jobs: JobsConfig = field(default_factory=JobsConfig)
     mesh: MeshConfig = field(default_factory=MeshConfig)
     remesh: RemeshParameters = field(default_factory=RemeshParameters)
     describe: DescribeParameters = field(default_factory=DescribeParameters)
@@ -189,7 +211,8 @@ _TYPE_NAMES = {int: "a whole number", float: "a number", str: "a string in quote
 def _parse(kind: type[T], table: Mapping[str, Any], file: str, section: str) -> T:
     """A dataclass of a TOML table; `section` is the table's dotted name, empty for the whole file."""
     hints = get_type_hints(kind)
-    known = [f.name for f in fields(kind)]  # type: ignore[arg-type] # T is always a dataclass here
+    of_kind = fields(kind)  # type: ignore[arg-type] # T is always a dataclass here
+    known = [each.name for each in of_kind]
     place = f"{file}: [{section}]" if section else f"{file}:"
     values: dict[str, Any] = {}
     for key, value in table.items():
@@ -202,7 +225,7 @@ def _parse(kind: type[T], table: Mapping[str, Any], file: str, section: str) -> 
             values[key] = _parse(hints[key], value, file, inner)
         else:
             values[key] = _value(hints[key], value, file, section, key)
-    missing = [each.name for each in fields(kind) if _is_required(each) and each.name not in values]  # type: ignore[arg-type] # as above
+    missing = [each.name for each in of_kind if _is_required(each) and each.name not in values]
     if missing:
         raise ConfigError(f"{place} {missing[0]} must be given but is not; add {missing[0]} = …")
     try:

@@ -3,8 +3,9 @@
 What happens is counted in Ray's metrics, and told to `on_event`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import takewhile
 
 from partwise.errors import NotFoundError
 from partwise.segmentation.parameters import RefinementParameters
@@ -29,10 +30,19 @@ from partwise_workers.stages.evaluate import EvaluateStage
 from partwise_workers.stages.picture import PictureStage
 from partwise_workers.stages.refine import RefineStage
 from partwise_workers.staging import sweep_staging
-from partwise_workers.tasks import StagedResult
+from partwise_workers.tasks import ShapeTask, StagedResult
 
 MESH_ROLES = {mesh_stage.NAME: MeshRole.ORIGINAL, remesh_stage.NAME: MeshRole.WORKING}
 """What the mesh that a stage made is to its shape."""
+
+
+MayGoOn = Callable[[], bool]
+"""Asked before each shape that a run takes up; once it says no, the run ends with what it has in hand."""
+
+
+def always() -> bool:
+    """The run goes on to its end."""
+    return True
 
 
 def preprocess(
@@ -41,10 +51,11 @@ def preprocess(
     on_progress: OnRunProgress,
     on_event: OnEvent = ignore_events,
     on_moved: Callable[[MoveReport], None] = lambda _: None,
+    may_go_on: MayGoOn = always,
 ) -> RunProgress:
     """Reads, checks, remeshes, describes and pictures every shape that is not yet described as it is configured to be.
 
-    Then labels move to the meshes that are new; `on_moved` is told how that went.
+    Then labels move to the meshes that are new; `on_moved` is told how that went. A run that is stopped moves none.
 
     Raises
     ------
@@ -52,8 +63,9 @@ def preprocess(
     WorkerError : Ray or its processes cannot be started. So do all passes.
     """
     stages = (*description_stages(workspace, collection), PictureStage(settings_of(collection).up))
-    result = _run(workspace, collection, stages, (), on_progress, on_event, _meshes)
-    on_moved(move_labels(workspace, collection, on_progress))
+    result = _run(workspace, collection, stages, (), on_progress, on_event, _meshes, may_go_on)
+    if may_go_on():
+        on_moved(move_labels(workspace, collection, on_progress))
     return result
 
 
@@ -68,19 +80,29 @@ def evaluate(
     """
     model = newest_model(workspace, collection)
     stage = EvaluateStage(ModelReference.of(model))
+    earlier = description_stages(workspace, collection)
+    return _run(workspace, collection, (stage,), earlier, on_progress, on_event, scores_of(model))
+
+
+def scores_of(model: Model) -> AlsoPublish:
+    """The scores that a model gave a shape, of the results of stage `evaluate`."""
 
     def scores(shape_id: int, result: StagedResult, row: int) -> Published:  # noqa: ARG001 - AlsoPublish's signature
+        if result.stage != evaluate_stage.NAME:
+            return Published()
         return Published(
             scores=tuple(NewScore(shape_id, model.id, name, result.summary[name]) for name in evaluate_stage.SCORES)
         )
 
-    return _run(
-        workspace, collection, (stage,), description_stages(workspace, collection), on_progress, on_event, scores
-    )
+    return scores
 
 
 def refine(
-    workspace: Workspace, collection: Collection, on_progress: OnRunProgress, on_event: OnEvent = ignore_events
+    workspace: Workspace,
+    collection: Collection,
+    on_progress: OnRunProgress,
+    on_event: OnEvent = ignore_events,
+    may_go_on: MayGoOn = always,
 ) -> RunProgress:
     """Graph cut on the newest model's probabilities, with the smoothness that its training chose.
 
@@ -91,7 +113,7 @@ def refine(
     model = newest_model(workspace, collection)
     stage = RefineStage(refinement_parameters(workspace, model), model.version)
     earlier = (*description_stages(workspace, collection), EvaluateStage(ModelReference.of(model)))
-    return _run(workspace, collection, (stage,), earlier, on_progress, on_event, nothing_else)
+    return _run(workspace, collection, (stage,), earlier, on_progress, on_event, nothing_else, may_go_on)
 
 
 def newest_model(workspace: Workspace, collection: Collection) -> Model:
@@ -124,20 +146,35 @@ def _run(
     on_progress: OnRunProgress,
     on_event: OnEvent,
     also_publish: AlsoPublish,
+    may_go_on: MayGoOn = always,
 ) -> RunProgress:
     n_total = sum(1 for _ in plan_tasks(workspace, collection, stages, earlier))
     on_progress(RunProgress(0, 0, n_total))
     result = RunProgress(0, 0, 0)
     if n_total:
-        with connected():
-            metrics = RunMetrics()
-
-            def tell(event: RunEvent) -> None:
-                metrics(event)
-                on_event(event)
-
-            ws = workspace
-            runner = StageRunner(ws.catalog, ws.arrays, ws.array_url, stages, ws.config.workers, also_publish, tell)
-            result = runner.run(plan_tasks(workspace, collection, stages, earlier), n_total, on_progress)
+        tasks = takewhile(lambda _: may_go_on(), plan_tasks(workspace, collection, stages, earlier))
+        result = run_tasks(workspace, stages, tasks, n_total, on_progress, on_event, also_publish)
     sweep_staging(workspace, collection, stages, earlier)
     return result
+
+
+def run_tasks(
+    workspace: Workspace,
+    stages: Sequence[Stage],
+    tasks: Iterator[ShapeTask],
+    n_total: int,
+    on_progress: OnRunProgress,
+    on_event: OnEvent,
+    also_publish: AlsoPublish,
+) -> RunProgress:
+    """One run over planned tasks, `n_total` of them at most, on the connected Ray or one of its own."""
+    with connected():
+        metrics = RunMetrics()
+
+        def tell(event: RunEvent) -> None:
+            metrics(event)
+            on_event(event)
+
+        ws = workspace
+        runner = StageRunner(ws.catalog, ws.arrays, ws.array_url, stages, ws.config.workers, also_publish, tell)
+        return runner.run(tasks, n_total, on_progress)

@@ -23,17 +23,24 @@ def plan_tasks(
     has not all of `earlier` under their present keys is passed over: its arrays would not fit together. So is a shape
     that failed under the same key, until its failure is cleared or the key changes.
     """
-    chain = [*earlier, *stages]
     for page in pages_of_shapes(workspace.catalog, collection.id):
-        ids = [shape.id for shape in page]
-        done = {stage.name: workspace.catalog.stage_runs(ids, stage.name) for stage in chain}
-        failed = {stage.name: workspace.catalog.failed_runs(ids, stage.name) for stage in stages}
-        for shape in page:
-            done_here = {name: runs[shape.id] for name, runs in done.items() if shape.id in runs}
-            failed_here = {name: runs[shape.id].key for name, runs in failed.items() if shape.id in runs}
-            task = _plan(shape, chain, len(earlier), done_here, failed_here)
-            if task is not None:
-                yield task
+        yield from plan_page(workspace, page, stages, earlier)
+
+
+def plan_page(
+    workspace: Workspace, shapes: Sequence[Shape], stages: Sequence[Stage], earlier: Sequence[Stage] = ()
+) -> Iterator[ShapeTask]:
+    """As `plan_tasks`, of these shapes, in their order: a page of a collection's."""
+    chain = [*earlier, *stages]
+    ids = [shape.id for shape in shapes]
+    done = {stage.name: workspace.catalog.stage_runs(ids, stage.name) for stage in chain}
+    failed = {stage.name: workspace.catalog.failed_runs(ids, stage.name) for stage in stages}
+    for shape in shapes:
+        done_here = {name: runs[shape.id] for name, runs in done.items() if shape.id in runs}
+        failed_here = {name: runs[shape.id].key for name, runs in failed.items() if shape.id in runs}
+        task = _plan(shape, chain, len(earlier), done_here, failed_here)
+        if task is not None:
+            yield task
 
 
 def description_stages(workspace: Workspace, collection: Collection) -> tuple[MeshStage, RemeshStage, DescribeStage]:

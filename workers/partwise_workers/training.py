@@ -164,10 +164,14 @@ Trainer = ray.remote(_Trainer)
 
 
 def train_collection(workspace: Workspace, collection: Collection, on_progress: Callable[[int, int], None]) -> Model:
-    """Trains on the newest human or imported labels of every shape; the model is one more version of the collection's.
+    """Trains as `trained_model`; the model is one more version of the collection's."""
+    return workspace.catalog.save_model(trained_model(workspace, collection, on_progress))
 
-    Shapes whose faces are all unlabelled teach nothing and are left out. The weights are in the array store before the
-    catalog has the model.
+
+def trained_model(workspace: Workspace, collection: Collection, on_progress: Callable[[int, int], None]) -> NewModel:
+    """Trains on the newest human or imported labels of every shape; the weights are stored, the model is on no record.
+
+    Shapes whose faces are all unlabelled teach nothing and are left out. What `on_progress` raises ends the training.
 
     Raises
     ------
@@ -181,7 +185,7 @@ def train_collection(workspace: Workspace, collection: Collection, on_progress: 
             raise _nothing_to_learn(workspace, collection)
         with connected():
             result, revision_ids = _train(workspace, chain([first], batches), on_progress)
-    return workspace.catalog.save_model(NewModel(collection.id, result.recipe, result.weights_key, revision_ids))
+    return NewModel(collection.id, result.recipe, result.weights_key, revision_ids)
 
 
 def _train(

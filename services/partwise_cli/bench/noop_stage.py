@@ -38,7 +38,7 @@ class NoopStage:
     def open(self, arrays: ArrayStore) -> AbstractContextManager[RunStage]:  # noqa: ARG002 - the protocol's
         return nullcontext(self._run)
 
-    def _run(self, inputs: ShapeInputs) -> StageResult:  # noqa: ARG002 - as above
+    def _run(self, inputs: ShapeInputs) -> StageResult:  # noqa: ARG002 - as every stage's
         return StageResult({"nothing": np.zeros((), dtype=np.uint8)}, {"is_noop": True})
 
 

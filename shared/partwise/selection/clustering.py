@@ -29,6 +29,14 @@ class FirstShape:
     distance: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Clustering:
+    """centres : (k, d), the cluster with most shapes first. cluster_ids : (n,) int64, 0 to k − 1, of each point."""
+
+    centres: Float[np.ndarray, "k d"]
+    cluster_ids: Int[np.ndarray, " n"]
+
+
 def first_shapes(
     points: Float[np.ndarray, "n d"], ids: Sequence[str], n_clusters: int, n_per_cluster: int, rng: np.random.Generator
 ) -> list[FirstShape]:
@@ -53,8 +61,30 @@ def first_shapes(
     Source: George, Xie, Lai, Tam 2018.
     """
     _check(points, ids, n_clusters, n_per_cluster)
+    return nearest_to_centres(points, ids, clustered(points, n_clusters, rng), n_per_cluster)
+
+
+def clustered(points: Float[np.ndarray, "n d"], n_clusters: int, rng: np.random.Generator) -> Clustering:
+    """K-means of (n, d) points, n ≥ n_clusters.
+
+    Raises
+    ------
+    NotEnoughDataError : fewer than n_clusters points differ.
+    """
     centres, members = _clusters(points, n_clusters, rng)
-    distances = cdist(points, centres)
+    cluster_ids = np.empty(len(points), dtype=np.int64)
+    for cluster, rows in enumerate(members):
+        cluster_ids[rows] = cluster
+    return Clustering(centres, cluster_ids)
+
+
+def nearest_to_centres(
+    points: Float[np.ndarray, "n d"], ids: Sequence[str], clustering: Clustering, n_per_cluster: int
+) -> list[FirstShape]:
+    """As `first_shapes`, of a clustering of these points."""
+    _check(points, ids, len(clustering.centres), n_per_cluster)
+    members = [np.flatnonzero(clustering.cluster_ids == k) for k in range(len(clustering.centres))]
+    distances = cdist(points, clustering.centres)
     nearest_own = [own[np.argsort(distances[own, k], kind="stable")][:n_per_cluster] for k, own in enumerate(members)]
     is_free = np.ones(len(ids), dtype=bool)
     is_free[np.concatenate(nearest_own)] = False

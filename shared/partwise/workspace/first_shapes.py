@@ -8,11 +8,11 @@ from jaxtyping import UInt8
 from safetensors.numpy import save
 
 from partwise.errors import NotEnoughDataError
-from partwise.selection.clustering import first_shapes
+from partwise.selection.clustering import clustered, nearest_to_centres
 from partwise.selection.embedding import fit_embedding, sample_rows
 from partwise.store.records import Collection, FirstShape, StageRun
 from partwise.workspace.segmentations import DESCRIBE
-from partwise.workspace.shapes import pages_of_shapes
+from partwise.workspace.shapes import PAGE, pages_of_shapes
 from partwise.workspace.workspace import Workspace
 
 LIGHT_FIELDS_AT_ONCE = 64
@@ -22,7 +22,9 @@ LIGHT_FIELDS_AT_ONCE = 64
 def select_first_shapes(
     workspace: Workspace, collection: Collection, n_clusters: int, n_per_cluster: int, seed: int
 ) -> list[FirstShape]:
-    """Fits the embedding on the described shapes, clusters it, and puts the shapes nearest each centre on record.
+    """Fits the embedding on the described shapes and clusters it.
+
+    On record are then every shape's cluster, and the shapes nearest each centre as those to label first.
 
     Raises
     ------
@@ -35,17 +37,22 @@ def select_first_shapes(
             f"selecting {n_clusters} × {n_per_cluster} shapes needs {max(2, n_wanted)} described ones but "
             f"{collection.name!r} has {len(described)}; run `partwise preprocess`, or ask for fewer"
         )
-    sampling, fitting, clustering = np.random.default_rng(seed).spawn(3)
+    sampling, fitting, seeding = np.random.default_rng(seed).spawn(3)
     sample = [described[row] for row in sample_rows(len(described), sampling)]
     embedding = fit_embedding(_light_fields(workspace, sample), fitting)
     points = np.concatenate([embedding.project(batch) for batch in _light_fields(workspace, described)])
     ids = [str(run.shape_id) for run in described]
-    chosen = first_shapes(points, ids, n_clusters, n_per_cluster, clustering)
+    clustering = clustered(points, n_clusters, seeding)
+    chosen = nearest_to_centres(points, ids, clustering, n_per_cluster)
     shape_ids = np.array([run.shape_id for run in described], dtype=np.int64)
     stored = save({**embedding.to_arrays(), "points": points, "shape_ids": shape_ids})
     key = f"embeddings/{collection.id}/{hashlib.sha256(stored).hexdigest()}.safetensors"
     workspace.arrays.put_bytes(key, stored)
     workspace.catalog.set_embedding(collection.id, key)
+    clusters = dict(zip(shape_ids.tolist(), clustering.cluster_ids.tolist(), strict=True))
+    for start in range(0, len(described), PAGE):  # in pieces, as others wait while it writes
+        some = shape_ids[start : start + PAGE].tolist()
+        workspace.catalog.set_clusters(collection.id, {shape_id: clusters[shape_id] for shape_id in some})
     firsts = [FirstShape(int(first.id), ordinal, first.cluster) for ordinal, first in enumerate(chosen)]
     workspace.catalog.replace_first_shapes(collection.id, firsts)
     return firsts

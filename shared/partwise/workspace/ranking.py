@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TypeVar
 
+import numpy as np
+
 from partwise.store.catalog import Catalog
 from partwise.store.records import Collection, Ordering
 from partwise.workspace.shapes import PAGE
@@ -20,6 +22,8 @@ BATCH = 64
 _ID_PAGE = 5_000
 _RANKS_AT_ONCE = 200  # places that a claim cannot have for the moment that it takes to write them
 
+_FIRST_BY_SCORE = 1_000  # behind the diversified ones, and with 29 bits of score before those that nothing ranked
+
 _POOL = 4
 """As many candidates for each shape of a batch: the least certain, of which different ones are taken first."""
 
@@ -29,20 +33,34 @@ def rank_queue(workspace: Workspace, collection: Collection, score_name: str, *,
 
     The first `BATCH` shapes are taken from `_POOL` times as many with the highest scores, from each cluster in turn;
     the rest follow by score. Shapes without a score come after all others, the first shapes before any model exists.
+    Only what changed is written: behind the first ones a shape's rank depends on its own score alone. Shapes that were
+    sent back stay first, and what is held stays as it is.
     """
     catalog = workspace.catalog
-    ranked = _waiting_by_score(catalog, collection.id, score_name, descending)
-    if not ranked and catalog.latest_model(collection.id) is None:
-        ranked = [first.shape_id for first in catalog.first_shapes(collection.id)]
+    scored = _waiting_by_score(catalog, collection.id, score_name, descending)
+    if not scored and catalog.latest_model(collection.id) is None:
+        ranks = {first.shape_id: rank for rank, first in enumerate(catalog.first_shapes(collection.id), start=1)}
     else:
-        pool = ranked[: BATCH * _POOL]
+        pool = [shape_id for _, shape_id in scored[: BATCH * _POOL]]
+        ranks = {shape_id: score_rank(value, descending=descending) for value, shape_id in scored}
         taken = diversified(pool, catalog.clusters(pool), BATCH)
-        ranked = [*taken, *(shape_id for shape_id in ranked if shape_id not in set(taken))]
-    places = enumerate(ranked, start=1)
+        ranks.update({shape_id: rank for rank, shape_id in enumerate(taken, start=1)})
+    in_order = sorted(ranks, key=ranks.__getitem__)
     return sum(
-        catalog.set_ranks(collection.id, {shape_id: rank for rank, shape_id in piece})
-        for piece in _pieces(places, _RANKS_AT_ONCE)
+        catalog.set_ranks(collection.id, {shape_id: ranks[shape_id] for shape_id in piece})
+        for piece in _pieces(in_order, _RANKS_AT_ONCE)
     )
+
+
+def score_rank(value: float, *, descending: bool = True) -> int:
+    """The rank of a score behind the diversified ones: lower for higher scores, for lower ones if not `descending`.
+
+    Equal for scores that differ by less than a millionth of their size.
+    """
+    bits = int(np.float32(value).view(np.uint32))
+    ascending = (bits | 1 << 31) if bits < 1 << 31 else (1 << 32) - 1 - bits  # floats in order as whole numbers
+    coarse = ascending >> 3
+    return _FIRST_BY_SCORE + ((1 << 29) - 1 - coarse if descending else coarse)
 
 
 def diversified(ranked: Sequence[int], clusters: Mapping[int, int], n_wanted: int) -> list[int]:
@@ -79,17 +97,16 @@ def materialise_ordering(workspace: Workspace, collection: Collection, score_nam
     return ordering if found is None else found
 
 
-def _waiting_by_score(catalog: Catalog, collection_id: int, score_name: str, descending: bool) -> list[int]:
-    """Ids of the shapes that wait, by score: as many numbers as shapes wait, no more is held."""
-    waiting: set[int] = set()
+def _waiting_by_score(
+    catalog: Catalog, collection_id: int, score_name: str, descending: bool
+) -> list[tuple[float, int]]:
+    """Scores and ids of the shapes that wait, by score: as many numbers as shapes wait, no more is held."""
+    scored: list[tuple[float, int]] = []
     after = 0
     while page := catalog.waiting_shapes(collection_id, after=after, limit=_ID_PAGE):
-        waiting.update(page)
+        scored.extend((score.value, shape_id) for shape_id, score in catalog.scores(page, score_name).items())
         after = page[-1]
-    scored: list[tuple[float, int]] = []
-    for ids in _pieces(sorted(waiting), _ID_PAGE):
-        scored.extend((score.value, shape_id) for shape_id, score in catalog.scores(ids, score_name).items())
-    return [shape_id for _, shape_id in sorted(scored, reverse=descending)]
+    return sorted(scored, reverse=descending)
 
 
 def _pieces(values: Iterable[T], size: int) -> Iterator[list[T]]:

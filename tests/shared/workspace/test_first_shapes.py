@@ -47,6 +47,14 @@ def test_the_embedding_has_a_point_for_each_described_shape(filled) -> None:
     assert len(arrays["points"]) == 3
 
 
+def test_every_embedded_shape_is_in_a_cluster(filled) -> None:
+    filled.described()
+    firsts = select_first_shapes(filled.workspace, filled.collection, 2, 1, seed=0)
+    clusters = filled.workspace.catalog.clusters(filled.ids.values())
+    assert set(clusters) == set(filled.ids.values())
+    assert {first.shape_id: first.cluster for first in firsts}.items() <= clusters.items()
+
+
 def test_descriptors_are_read_in_batches(filled, monkeypatch: pytest.MonkeyPatch) -> None:
     filled.described()
     whole = _points(filled)

@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from partwise.store.records import NewClaim
-from partwise.workspace.ranking import diversified, materialise_ordering, rank_queue, refill_queue
+from partwise.store.sql.places import UNRANKED
+from partwise.workspace import ranking
+from partwise.workspace.ranking import BATCH, diversified, materialise_ordering, rank_queue, refill_queue, score_rank
 
 
 def test_clusters_take_turns_in_order_of_their_best() -> None:
@@ -55,6 +57,40 @@ def test_shapes_of_one_cluster_do_not_follow_on_each_other(filled) -> None:
     filled.workspace.catalog.set_clusters(filled.collection.id, {a: 1, b: 0, c: 0})
     rank_queue(filled.workspace, filled.collection, "entropy")
     assert _order(filled, "ann") == [c, a, b]
+
+
+def test_behind_the_first_ones_only_what_has_another_score_moves(filled, monkeypatch) -> None:
+    monkeypatch.setattr(ranking, "BATCH", 1)
+    filled.described()
+    filled.evaluated()
+    a, b, c = filled.ids.values()
+    assert rank_queue(filled.workspace, filled.collection, "entropy") == 3
+    assert _order(filled, "ann") == [c, b, a]
+    filled.workspace.catalog.claim_shape(c, filled.workspace.catalog.add_person("bob").id, 60)
+    assert rank_queue(filled.workspace, filled.collection, "entropy") == 0
+
+
+def test_shapes_that_were_sent_back_stay_first(filled) -> None:
+    filled.described()
+    filled.evaluated()
+    a, b, c = filled.ids.values()
+    filled.workspace.catalog.reopen_shape(a, filled.workspace.catalog.add_person("oscar").id)
+    rank_queue(filled.workspace, filled.collection, "entropy")
+    assert _order(filled, "ann") == [a, c, b]
+
+
+@given(st.floats(-1e6, 1e6, width=32), st.floats(-1e6, 1e6, width=32))
+def test_ranks_follow_scores(first: float, second: float) -> None:
+    higher, lower = max(first, second), min(first, second)
+    assert score_rank(higher) <= score_rank(lower)
+    assert score_rank(higher, descending=False) >= score_rank(lower, descending=False)
+    if higher - lower > 1e-6 * max(abs(higher), abs(lower), 1e-30):
+        assert score_rank(higher) < score_rank(lower)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False, width=32))
+def test_ranks_by_score_lie_between_the_first_ones_and_the_unranked(value: float) -> None:
+    assert BATCH < score_rank(value) < UNRANKED
 
 
 def test_an_ordering_is_made_anew(filled) -> None:

@@ -1,0 +1,62 @@
+"""Commands that keep a workspace going: work, up."""
+
+from contextlib import suppress
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from partwise.errors import ParameterError
+from partwise_cli.arguments import CollectionOption, WorkspaceArgument
+from partwise_cli.signals import interrupt_on_sigterm
+
+if TYPE_CHECKING:
+    from partwise.store.records import Job, JobKind
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands of this module."""
+    for command in (work,):
+        app.command(rich_help_panel="People at work")(command)
+
+
+def work(
+    ws: WorkspaceArgument,
+    collection: CollectionOption = None,
+    kinds: Annotated[
+        str | None, typer.Option(help="Only jobs of these kinds, comma-separated.", show_default="all")
+    ] = None,
+    once: Annotated[bool, typer.Option("--once", help="End when no job waits.")] = False,
+) -> None:
+    """Do the jobs that wait, as they come.  [dim]partwise work ws[/dim]"""
+    from partwise.workspace.workspace import open_workspace
+    from partwise_cli.jobs.cluster import Cluster
+    from partwise_cli.jobs.handlers import HANDLERS
+    from partwise_cli.jobs.worker import Worker
+
+    chosen = None if kinds is None else _kinds(kinds)
+    interrupt_on_sigterm()
+    with open_workspace(ws) as workspace:
+        collection_id = None if collection is None else workspace.catalog.get_collection(collection).id
+        cluster = Cluster(interrupt_on_sigterm)
+        worker = Worker(workspace, HANDLERS, cluster, kinds=chosen, collection_id=collection_id, on_job=_tell)
+        typer.echo(f"worker {worker.owner} waits for jobs; Ctrl-C ends it", err=True)
+        if once:
+            worker.run(once=True)
+            return
+        with suppress(KeyboardInterrupt):  # how it is meant to end
+            worker.run()
+
+
+def _kinds(text: str) -> "list[JobKind]":
+    from partwise.store.records import JobKind
+
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names:
+        if name not in list(JobKind):
+            raise ParameterError(f"a kind of job must be one of {', '.join(JobKind)} but is {name!r}; correct --kinds")
+    return [JobKind(name) for name in names]
+
+
+def _tell(job: "Job") -> None:
+    message = f": {job.progress.message}" if job.progress.message else ""
+    typer.echo(f"job {job.id}, {job.kind} of collection {job.collection_id}: {job.state}{message}", err=True)
