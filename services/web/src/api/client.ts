@@ -8,11 +8,16 @@ import createClient, { type Middleware } from "openapi-fetch";
 import { Problem, problemOf, Unreachable } from "./problem";
 import { type Arrays, parseSafetensors } from "./safetensors";
 import type { components, paths } from "./schema";
+import { announceSessionEnd } from "./sessionEnd";
 
 export type Schemas = components["schemas"];
 
+const UNAUTHENTICATED = 401;
+const LOGIN = "/api/v1/login";
+
 const refusals: Middleware = {
-  async onResponse({ response }) {
+  async onResponse({ response, schemaPath }) {
+    if (response.status === UNAUTHENTICATED && schemaPath !== LOGIN) announceSessionEnd();
     if (!response.ok && response.status !== 304) throw await problemOf(response);
   },
   onError({ error }) {
@@ -33,6 +38,7 @@ export async function fetchArrays(path: string, init: RequestInit = {}): Promise
   const headers = new Headers(init.headers);
   headers.set("Accept", "application/vnd.safetensors, application/octet-stream");
   const response = await reach(`/api/v1${path}`, { ...init, headers, credentials: "same-origin" });
+  if (response.status === UNAUTHENTICATED) announceSessionEnd();
   if (!response.ok) throw await problemOf(response);
   return parseSafetensors(await response.arrayBuffer());
 }

@@ -14,24 +14,60 @@ export interface EventListener {
   onEvent(event: ServiceEvent): void;
   /** Events were missed for good: whatever is shown must be read anew. */
   onMissed(): void;
-  /** Whether the stream is there. Browsers come back by themselves, and resume from the last id. */
+  /** Whether the stream is there. It comes back by itself, and resumes from the last id. */
   onConnection(isConnected: boolean): void;
 }
 
+const REOPEN_MS = 4_000;
+
 /** Listens until the function that it returns is called. */
 export function listen(listener: EventListener): () => void {
-  const source = new EventSource("/api/v1/events", { withCredentials: true });
-  for (const kind of EVENT_KINDS) {
-    source.addEventListener(kind, (message: MessageEvent<string>) => {
-      const { at, collection_id, payload } = JSON.parse(message.data);
-      listener.onEvent({ kind, at, collectionId: collection_id, payload });
+  const stream = new EventStream(listener);
+  stream.connect();
+  return () => stream.disconnect();
+}
+
+/** One stream. Browsers resume one that breaks, but give up on one that was refused: that is opened anew. */
+class EventStream {
+  private source: EventSource | undefined;
+  private reopening: ReturnType<typeof setTimeout> | undefined;
+  private lastId = "";
+
+  constructor(private readonly listener: EventListener) {}
+
+  connect(): void {
+    const after = this.lastId === "" ? "" : `?after=${encodeURIComponent(this.lastId)}`;
+    const source = new EventSource(`/api/v1/events${after}`, { withCredentials: true });
+    this.source = source;
+    for (const kind of EVENT_KINDS) source.addEventListener(kind, (message) => this.receive(kind, message));
+    source.addEventListener("begin", (message) => this.begin(message));
+    source.addEventListener("missed", (message) => {
+      this.begin(message);
+      this.listener.onMissed();
     });
+    source.addEventListener("error", () => this.lose(source));
   }
-  source.addEventListener("begin", () => listener.onConnection(true));
-  source.addEventListener("missed", () => {
-    listener.onConnection(true);
-    listener.onMissed();
-  });
-  source.addEventListener("error", () => listener.onConnection(false));
-  return () => source.close();
+
+  disconnect(): void {
+    clearTimeout(this.reopening);
+    this.source?.close();
+  }
+
+  private begin(message: MessageEvent<string>): void {
+    this.lastId = message.lastEventId;
+    this.listener.onConnection(true);
+  }
+
+  private receive(kind: EventKind, message: MessageEvent<string>): void {
+    this.lastId = message.lastEventId;
+    const { at, collection_id, payload } = JSON.parse(message.data);
+    this.listener.onEvent({ kind, at, collectionId: collection_id, payload });
+  }
+
+  private lose(source: EventSource): void {
+    this.listener.onConnection(false);
+    if (source.readyState !== EventSource.CLOSED) return;
+    clearTimeout(this.reopening);
+    this.reopening = setTimeout(() => this.connect(), REOPEN_MS);
+  }
 }

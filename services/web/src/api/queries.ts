@@ -11,7 +11,8 @@ export function newQueryClient(): QueryClient {
     defaultOptions: {
       queries: {
         staleTime: 30_000,
-        retry: (failures, error) => !(error instanceof Problem && error.status < 500) && failures < MAX_RETRIES,
+        retry: (failures, error) =>
+          !(error instanceof Problem && error.status < 500) && failures < MAX_RETRIES,
       },
     },
   });
@@ -33,6 +34,20 @@ export const partsQuery = (collectionId: number) =>
     queryKey: ["parts", collectionId],
     queryFn: () =>
       body(
-        api.GET("/api/v1/collections/{collection_id}/parts", { params: { path: { collection_id: collectionId } } }),
+        api.GET("/api/v1/collections/{collection_id}/parts", {
+          params: { path: { collection_id: collectionId } },
+        }),
+      ),
+  });
+
+/** Jobs that workers are at now, newest first: what the bar shows and operators follow. */
+export const runningJobsQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["jobs", collectionId, "running"],
+    queryFn: () =>
+      body(
+        api.GET("/api/v1/collections/{collection_id}/jobs", {
+          params: { path: { collection_id: collectionId }, query: { state: "running", limit: 20 } },
+        }),
       ),
   });

@@ -34,7 +34,8 @@ const LENGTH_BYTES = 8;
 export function parseSafetensors(buffer: ArrayBuffer): Arrays {
   const headerBytes = Number(new DataView(buffer).getBigUint64(0, true));
   const start = LENGTH_BYTES + headerBytes;
-  if (start > buffer.byteLength) throw new RangeError(`a header of ${headerBytes} bytes passes the file's end`);
+  if (start > buffer.byteLength)
+    throw new RangeError(`a header of ${headerBytes} bytes passes the file's end`);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, LENGTH_BYTES, headerBytes)));
   const { __metadata__: metadata = {}, ...entries } = header as Record<string, Entry> & {
     __metadata__?: Record<string, string>;
@@ -47,7 +48,8 @@ export function parseSafetensors(buffer: ArrayBuffer): Arrays {
 }
 
 function viewOf(buffer: ArrayBuffer, start: number, name: string, entry: Entry): TypedArray {
-  if (!(entry.dtype in VIEWS)) throw new TypeError(`array ${name} is of type ${entry.dtype}, which is not read here`);
+  if (!(entry.dtype in VIEWS))
+    throw new TypeError(`array ${name} is of type ${entry.dtype}, which is not read here`);
   const View = VIEWS[entry.dtype as Dtype];
   const [from, to] = entry.data_offsets;
   const begin = start + from;
@@ -57,8 +59,13 @@ function viewOf(buffer: ArrayBuffer, start: number, name: string, entry: Entry):
 }
 
 /** An array that must be there, and of this kind. */
-export function arrayOf<T extends TypedArray>(file: Arrays, name: string, kind: new (length: number) => T): T {
+export function arrayOf<T extends TypedArray>(
+  file: Arrays,
+  name: string,
+  kind: new (length: number) => T,
+): T {
   const found = file.arrays[name]?.values;
-  if (!(found instanceof kind)) throw new TypeError(`the service's answer has no array ${name} of ${kind.name}`);
+  if (!(found instanceof kind))
+    throw new TypeError(`the service's answer has no array ${name} of ${kind.name}`);
   return found;
 }

@@ -1,0 +1,27 @@
+import type { ReactNode } from "react";
+import type { Collection } from "../CollectionContext";
+import styles from "./Shell.module.css";
+import { TopBar } from "./TopBar";
+import { useRoomKeys } from "./useRoomKeys";
+
+export interface ShellProps {
+  collection: Collection | null;
+  room: string | null;
+  children: ReactNode;
+}
+
+/** The bar, and a room that has all the rest of the window: rooms scroll by themselves, or let the page do it. */
+export function Shell({ collection, room, children }: ShellProps) {
+  useRoomKeys(collection?.id ?? null);
+  return (
+    <div className={styles.shell}>
+      <a href="#room" className={styles.skip}>
+        Skip to the room
+      </a>
+      <TopBar collection={collection} room={room} />
+      <main id="room" tabIndex={-1} className={styles.room}>
+        {children}
+      </main>
+    </div>
+  );
+}

@@ -1,0 +1,89 @@
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import { Plus } from "lucide-react";
+import { type FormEvent, useId, useState } from "react";
+import { useLocation } from "wouter";
+import { api, body } from "../../../api/client";
+import { collectionsQuery } from "../../../api/queries";
+import { roomAddress } from "../../../app/rooms";
+import { Button, Dialog, Field, Input } from "../../../components";
+import styles from "./NewCollection.module.css";
+import { partNamesOf } from "./partNames";
+
+/** A button that makes a collection with its first parts, and opens its settings, where files are added. */
+export function NewCollection() {
+  const [isOpen, setOpen] = useState(false);
+  return (
+    <>
+      <Button variant="primary" icon={<Plus />} onClick={() => setOpen(true)}>
+        New collection
+      </Button>
+      {isOpen && <NewCollectionDialog onClose={() => setOpen(false)} />}
+    </>
+  );
+}
+
+function NewCollectionDialog({ onClose }: { onClose: () => void }) {
+  const [name, setName] = useState("");
+  const [partText, setPartText] = useState("");
+  const parts = partNamesOf(partText);
+  const form = useId();
+  const queries = useQueryClient();
+  const [, navigate] = useLocation();
+  const creation = useMutation({
+    mutationFn: () =>
+      body(api.POST("/api/v1/collections", { body: { name: name.trim(), parts: [...parts] } })),
+    onSuccess: async (made) => {
+      await queries.invalidateQueries({ queryKey: collectionsQuery.queryKey });
+      onClose();
+      navigate(roomAddress(made.id, "settings"));
+    },
+  });
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    creation.mutate();
+  };
+  const footer = (
+    <>
+      <Button onClick={onClose}>Cancel</Button>
+      <Button
+        type="submit"
+        form={form}
+        variant="primary"
+        isBusy={creation.isPending}
+        disabled={name.trim() === "" || parts.length === 0}
+      >
+        Create collection
+      </Button>
+    </>
+  );
+  return (
+    <Dialog title="New collection" onClose={onClose} footer={footer}>
+      <form id={form} onSubmit={submit} className={styles.form}>
+        <Input
+          label="Name"
+          value={name}
+          maxLength={200}
+          required
+          autoFocus
+          onChange={(event) => setName(event.target.value)}
+        />
+        <Field
+          label="Parts"
+          hint="One a line, in the order annotators see them. Colours, descriptions and more parts can be set later."
+          error={creation.error?.message}
+        >
+          {(control) => (
+            <textarea
+              {...control}
+              className={styles.parts}
+              rows={6}
+              value={partText}
+              placeholder={"seat\nback\nleg"}
+              onChange={(event) => setPartText(event.target.value)}
+            />
+          )}
+        </Field>
+      </form>
+    </Dialog>
+  );
+}
