@@ -1,0 +1,89 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import { Unreachable } from "../api/problem";
+import { LeaseKeeper, type LeaseRecord, type LeaseTransport, type Renewed } from "./leaseKeeper";
+import { conflict, HandClock, settled } from "./testing";
+
+const LEASE_MS = 300_000;
+
+let clock: HandClock;
+let answers: (() => Renewed<LeaseRecord>)[];
+let claims: (() => Renewed<LeaseRecord>)[];
+let nRenewals: number;
+
+beforeEach(() => {
+  clock = new HandClock();
+  answers = [];
+  claims = [];
+  nRenewals = 0;
+});
+
+/** The service's clock is a day ahead of this one. */
+function renewed(id = 1): Renewed<LeaseRecord> {
+  const at = clock.now() + 86_400_000;
+  const expires_at = new Date(at + LEASE_MS).toISOString();
+  return { at, lease: { id, shape_id: 3, collection_id: 1, acquired_at: expires_at, expires_at } };
+}
+
+const transport: LeaseTransport<LeaseRecord> = {
+  async renew() {
+    nRenewals++;
+    return (answers.shift() ?? renewed)();
+  },
+  reclaim: async () => (claims.shift() ?? (() => renewed(2)))(),
+};
+
+const fails = (error: Error) => () => {
+  throw error;
+};
+
+describe("a lease", () => {
+  it("is renewed three times in its length, whatever the clocks say", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    await clock.advance(LEASE_MS);
+    expect(nRenewals).toBe(3);
+    expect(keeper.state.get()).toEqual({ kind: "held" });
+  });
+
+  it("is unsure once the service was not reached for its length, and held again after", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    answers = Array(1000).fill(fails(new Unreachable("cut")));
+    await clock.advance(LEASE_MS - 1000);
+    expect(keeper.state.get().kind).toBe("held");
+    await clock.advance(60_000);
+    expect(keeper.state.get().kind).toBe("unsure");
+    answers = [];
+    await clock.advance(60_000);
+    expect(keeper.state.get().kind).toBe("held");
+  });
+
+  it("that ended is claimed anew by name, and its draft is to be opened with the new one", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    const opened: number[] = [];
+    keeper.onReclaimed = (lease) => opened.push(lease.id);
+    answers = [fails(conflict("lease 1 is expired"))];
+    await clock.advance(LEASE_MS / 3);
+    expect(opened).toEqual([2]);
+    expect(keeper.lease.id).toBe(2);
+    expect(keeper.state.get().kind).toBe("held");
+  });
+
+  it("that somebody else has is lost, says why, and comes back once it is free", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    answers = [fails(conflict("lease 1 is expired")), fails(conflict("lease 1 is expired"))];
+    claims = [fails(conflict("shape 3 is with Ben"))];
+    await clock.advance(LEASE_MS / 3);
+    expect(keeper.state.get()).toEqual({ kind: "lost", why: "shape 3 is with Ben" });
+    await clock.advance(60_000);
+    expect(keeper.state.get().kind).toBe("held");
+  });
+
+  it("is let go when stopped, even while an answer is under way", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    const asking = keeper.renew();
+    keeper.stop();
+    await asking;
+    await settled();
+    await clock.advance(10 * LEASE_MS);
+    expect(nRenewals).toBe(1);
+  });
+});

@@ -1,0 +1,126 @@
+/** Holds a leased shape for its person by renewing the lease, and notices when it was lost. */
+import { Backoff } from "./backoff";
+import type { Clock } from "./clock";
+import { Observable } from "./observable";
+import { failureOf } from "./transport";
+
+export interface LeaseRecord {
+  readonly id: number;
+  readonly shape_id: number;
+  readonly collection_id: number;
+  readonly acquired_at: string;
+  readonly expires_at: string;
+}
+
+export interface Renewed<L extends LeaseRecord> {
+  readonly lease: L;
+  /** Of the service, milliseconds since 1970: clocks differ. */
+  readonly at: number;
+}
+
+export interface LeaseTransport<L extends LeaseRecord> {
+  renew(leaseId: number, isPrefetched: boolean | null): Promise<Renewed<L>>;
+  /** Claims a shape by name again, after its lease was lost. */
+  reclaim(collectionId: number, shapeId: number): Promise<Renewed<L>>;
+}
+
+export type LeaseState =
+  | { readonly kind: "held" }
+  /** The service was not reached for longer than the lease lasts: somebody else may have the shape. */
+  | { readonly kind: "unsure" }
+  /** Somebody else has the shape, or it was taken away. Strokes are still taken. */
+  | { readonly kind: "lost"; readonly why: string };
+
+const SHORTEST_MS = 5_000;
+const RENEWALS_A_LEASE = 3;
+
+export class LeaseKeeper<L extends LeaseRecord> {
+  readonly state = new Observable<LeaseState>({ kind: "held" });
+  /** The shape was claimed anew: its draft must be opened with this lease. */
+  onReclaimed: (lease: L) => void = () => {};
+
+  private readonly backoff: Backoff;
+  private held: L;
+  private expiresAt: number;
+  private cancel: (() => void) | null = null;
+  private isStopped = false;
+  private isAsking = false;
+
+  constructor(
+    private readonly transport: LeaseTransport<L>,
+    private readonly clock: Clock,
+    claimed: Renewed<L>,
+  ) {
+    this.backoff = new Backoff(clock);
+    this.held = claimed.lease;
+    this.expiresAt = 0;
+    this.hold(claimed);
+  }
+
+  get lease(): L {
+    return this.held;
+  }
+
+  /** Renews now: after sleep, or when the network is back. */
+  async renew(isPrefetched: boolean | null = null): Promise<void> {
+    if (this.isStopped || this.isAsking) return;
+    this.cancel?.();
+    this.backoff.stop();
+    this.isAsking = true;
+    try {
+      await this.ask(isPrefetched);
+    } finally {
+      this.isAsking = false;
+    }
+  }
+
+  stop(): void {
+    this.isStopped = true;
+    this.cancel?.();
+    this.backoff.stop();
+  }
+
+  private async ask(isPrefetched: boolean | null): Promise<void> {
+    try {
+      this.hold(await this.transport.renew(this.held.id, isPrefetched));
+    } catch (error) {
+      const failure = failureOf(error);
+      if (failure.kind === "closed" || failure.kind === "stale") await this.claimAgain();
+      else this.later(failure.why, failure.kind === "refused");
+    }
+  }
+
+  private async claimAgain(): Promise<void> {
+    try {
+      const renewed = await this.transport.reclaim(this.held.collection_id, this.held.shape_id);
+      if (this.isStopped) return;
+      this.hold(renewed);
+      this.onReclaimed(renewed.lease);
+    } catch (error) {
+      const failure = failureOf(error);
+      this.later(failure.why, failure.kind !== "passing" && failure.kind !== "signed-out");
+    }
+  }
+
+  private hold({ lease, at }: Renewed<L>): void {
+    if (this.isStopped) return;
+    const lastsMs = Date.parse(lease.expires_at) - at;
+    this.held = lease;
+    this.expiresAt = this.clock.now() + lastsMs;
+    this.backoff.reset();
+    this.state.set({ kind: "held" });
+    const nextMs = Math.max(SHORTEST_MS, lastsMs / RENEWALS_A_LEASE);
+    this.cancel?.();
+    this.cancel = this.clock.after(nextMs, () => void this.renew());
+  }
+
+  /** Tries again after a while; what was lost may come free. */
+  private later(why: string, isLost: boolean): void {
+    if (this.isStopped) return;
+    if (isLost) this.state.set({ kind: "lost", why });
+    else if (this.clock.now() >= this.expiresAt && this.state.get().kind === "held") {
+      this.state.set({ kind: "unsure" });
+    }
+    this.backoff.wait(() => void this.renew());
+  }
+}
