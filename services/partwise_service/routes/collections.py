@@ -5,6 +5,7 @@ from dataclasses import fields
 from fastapi import APIRouter
 
 from partwise.store.queue_settings import QueueSettings, queue_settings_of
+from partwise.store.records import JobKind
 from partwise.workspace.settings import change_settings
 from partwise_service.dependencies import (
     Caller,
@@ -48,7 +49,7 @@ def show_collection(collection: ScopedCollection) -> CollectionOut:
 def set_collection(
     caller: Operator, workspace: WorkspaceDep, collection: ScopedCollection, change: SettingsChange
 ) -> CollectionOut:
-    """Change settings; what is left out stays."""
+    """Change settings; what is left out stays. The queue follows `labels_per_shape` as soon as a worker is there."""
     given = change.model_dump(exclude_none=True)
     if not given:
         return CollectionOut.of(collection)
@@ -57,5 +58,7 @@ def set_collection(
     if of_queue:
         queue_settings_of({**collection.settings, **of_queue})  # raises for what does not fit
         changed = workspace.catalog.update_collection_settings(collection.id, of_queue)
+    if "labels_per_shape" in of_queue:
+        workspace.catalog.enqueue_job(collection.id, JobKind.REFILL)
     workspace.catalog.append_audit(caller.name, "set", f"collection {collection.id}", {**given, **of_queue})
     return CollectionOut.of(changed)
