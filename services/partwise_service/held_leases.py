@@ -1,21 +1,17 @@
-"""Leases as callers see them: with the shape, its score and the draft to go on with."""
+"""Leases as callers see them: with the shape and the draft to go on with."""
 
 from collections.abc import Sequence
 
 from partwise.errors import NotFoundError
 from partwise.store.catalog import Catalog
 from partwise.store.records import Lease, Role
-from partwise.workspace.choices import ScoreName
 from partwise_service.schemas.queue import LeaseOut
 from partwise_service.security.identity import Identity
-
-QUEUE_SCORE = ScoreName.ENTROPY
-"""What the queue is ranked by."""
 
 
 def leases_out(catalog: Catalog, leases: Sequence[Lease], caller: Identity) -> list[LeaseOut]:
     """The leases in their order, with the caller's own open drafts."""
-    rows = catalog.listed_shapes([lease.shape_id for lease in leases], QUEUE_SCORE)
+    rows = catalog.listed_shapes([lease.shape_id for lease in leases])
     drafts = {draft.shape_id: draft.id for draft in catalog.open_drafts(caller.person_id)} if leases else {}
     return [
         LeaseOut.of(

@@ -10,7 +10,6 @@ from partwise.store.catalog import SHOWN_KINDS, Catalog
 from partwise.store.records import ANY_STAGE, BY_NAME, ListedShape, Role, ShapeFilter, ShapeOrder, ShapeState
 from partwise.workspace.provenance import FailureCard, ProvenanceCard, provenance
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep
-from partwise_service.held_leases import QUEUE_SCORE
 from partwise_service.schemas.base import MAX_ROW_ID, Page
 from partwise_service.schemas.paging import anchor_of, cursor_of
 from partwise_service.schemas.shapes import (
@@ -114,8 +113,9 @@ def list_orders(collection: ScopedCollection, catalog: CatalogDep) -> OrdersOut:
         OrderOut(name=NO_ORDER, label="None", direction_default=asc, is_queues=False),
         OrderOut(name=BY_NAME, label="Name", direction_default=asc, is_queues=False),
     ]
+    of_queue = catalog.ranking_score(collection.id)
     scores = [
-        OrderOut(name=name, label=_label(name), direction_default=desc, is_queues=name == QUEUE_SCORE)
+        OrderOut(name=name, label=_label(name), direction_default=desc, is_queues=name == of_queue)
         for name in catalog.score_names(collection.id)
     ]
     return OrdersOut(items=[*always, *scores])

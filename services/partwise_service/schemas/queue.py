@@ -57,7 +57,9 @@ class Assigned(Answer):
 class LeaseOut(Answer):
     """A shape in somebody's hands until `expires_at`; `outcome` once that has ended.
 
-    score, model_version : the shape's latest score and the model it comes from; null before a model has seen it.
+    rank : its place in the queue when it was handed out, from 1; null if it did not wait there, or far behind.
+    score_name, score, model_version : the score that the queue is ranked by, as it was then, and the model it comes
+        from; null before a model has seen the shape.
     draft_id : the caller's open draft of the shape, to be gone on with.
     """
 
@@ -74,6 +76,8 @@ class LeaseOut(Answer):
     released_at: datetime | None
     outcome: LeaseOutcome | None
     reason: str | None
+    rank: int | None
+    score_name: str | None
     score: float | None
     model_version: int | None
     draft_id: int | None
@@ -86,8 +90,6 @@ class LeaseOut(Answer):
             source_key=row.shape.source_key,
             state=row.state,
             mesh_hash=row.shape.mesh_hash,
-            score=row.value,
-            model_version=row.model_version,
             draft_id=draft_id,
         )
 
@@ -103,6 +105,10 @@ _OF_LEASE = (
     "released_at",
     "outcome",
     "reason",
+    "rank",
+    "score_name",
+    "score",
+    "model_version",
 )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import UInt16
 
 from partwise.errors import ConflictError, StaleDraftError
+from partwise.labels.annotation_cost import annotation_cost
 from partwise.labels.encoding import labels_sha256
 from partwise.labels.fold import FoldedLog, fold
 from partwise.labels.stroke_json import stroke_from_document
@@ -104,7 +105,8 @@ def confirm(
     schema = workspace.catalog.parts(draft.collection_id)
     folded = fold(work.log, work.mesh, work.base_labels, schema, expected_sha256)
     keep_mesh(workspace.catalog, workspace.arrays, workspace.catalog.mesh(draft.shape_id, draft.mesh_hash))
-    new = partial(NewConfirmation, draft_id, person_id, n_strokes, folded.labels, folded.schema_version)
+    cost = annotation_cost(work.log.strokes, opened_at=draft.created_at)
+    new = partial(NewConfirmation, draft_id, person_id, n_strokes, folded.labels, folded.schema_version, cost=cost)
     if draft.purpose is LeasePurpose.BLIND:
         return workspace.catalog.confirm_draft(new(blind_check=_blind_check(workspace, work, folded)))
     if draft.purpose is LeasePurpose.LABEL or draft.outcome is not None:

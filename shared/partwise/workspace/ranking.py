@@ -46,6 +46,7 @@ def rank_queue(workspace: Workspace, collection: Collection, score_name: str, *,
         taken = diversified(pool, catalog.clusters(pool), BATCH)
         ranks.update({shape_id: rank for rank, shape_id in enumerate(taken, start=1)})
     in_order = sorted(ranks, key=ranks.__getitem__)
+    catalog.record_ranking(collection.id, score_name)
     return sum(
         catalog.set_ranks(collection.id, {shape_id: ranks[shape_id] for shape_id in piece})
         for piece in _pieces(in_order, _RANKS_AT_ONCE)

@@ -89,9 +89,17 @@ class QueueCatalog(Protocol):
     def set_ranks(self, collection_id: int, ranks: Mapping[int, int]) -> int:
         """Give shapes that wait their ranks, lowest first; how many labels that moved.
 
-        Held ones and those that are just being claimed are not disturbed. Call it with some thousand at a time: others
-        wait while it writes.
+        Held ones, those that are just being claimed and what a person put first are not disturbed. Call it with some
+        thousand at a time: others wait while it writes.
         """
+        ...
+
+    def record_ranking(self, collection_id: int, score_name: str) -> None:
+        """Put on record by which score the queue is ranked: leases tell that one."""
+        ...
+
+    def ranking_score(self, collection_id: int) -> str:
+        """The score by which the queue was ranked last, `DEFAULT_RANKING` if it never was."""
         ...
 
     def waiting_shapes(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[int]:

@@ -19,6 +19,7 @@ from partwise.store.records.events import Event, EventBounds, EventKind, NewEven
 from partwise.store.records.jobs import BACKGROUND_KINDS, COALESCED_KINDS, Job, JobKind, JobState, Progress
 from partwise.store.records.labels import LabelRevision, NewRevision, RevisionKind
 from partwise.store.records.leases import (
+    DEFAULT_RANKING,
     MAX_HELD,
     Lease,
     LeaseOutcome,
@@ -69,6 +70,7 @@ __all__ = [
     "BACKGROUND_KINDS",
     "BY_NAME",
     "COALESCED_KINDS",
+    "DEFAULT_RANKING",
     "MAX_HELD",
     "Answer",
     "AuditEntry",

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Integer
 
 from partwise.errors import ParameterError
+from partwise.labels.annotation_cost import AnnotationCost
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +110,7 @@ class NewConfirmation:
 
     consensus : needed exactly when these are the last labels that an independent round waits for.
     blind_check : for a draft whose purpose is blind, if the reference is on the draft's mesh.
+    cost : what the strokes took.
     """
 
     draft_id: int
@@ -118,6 +120,7 @@ class NewConfirmation:
     schema_version: int
     consensus: NewConsensus | None = None
     blind_check: NewBlindCheck | None = None
+    cost: AnnotationCost | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,7 @@ class Draft:
     n_strokes : strokes on record, which is the sequence of the next one.
     seen_revision : the shape's newest shown labels that the person knows of; newer ones refuse the confirmation.
     labels_sha256 : checksum of what was confirmed.
+    active_s, n_clicks : what it had cost when it was confirmed: seconds at work, presses; None if nobody counted.
     """
 
     id: int
@@ -60,6 +61,8 @@ class Draft:
     closed_at: datetime | None
     outcome: DraftOutcome | None
     labels_sha256: str | None
+    active_s: float | None = None
+    n_clicks: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

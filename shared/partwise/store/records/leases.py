@@ -10,6 +10,10 @@ MAX_HELD = 4
 """Shapes that a person may hold at once, beside one that is prefetched."""
 
 
+DEFAULT_RANKING = "entropy"
+"""The score that ranks where no ranking is on record yet."""
+
+
 class LeasePurpose(StrEnum):
     """What becomes of the labels that a lease leads to. Never told to the person who holds it.
 
@@ -70,6 +74,8 @@ class Lease:
     slot : which of the labels that the shape is to get, from 0.
     round : how often the shape went into the queue, from 1; it goes again when labels are sent back.
     reason : of a skip, in the person's words.
+    rank : its place in the queue when it was leased, from 1; None if it did not wait there, or far behind.
+    score_name, score, model_version : the score that ranks, as it was then, and which model's it was.
     """
 
     id: int
@@ -85,6 +91,10 @@ class Lease:
     released_at: datetime | None
     outcome: LeaseOutcome | None
     reason: str | None
+    rank: int | None = None
+    score_name: str | None = None
+    score: float | None = None
+    model_version: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ from partwise.store.sql import answers, leases
 from partwise.store.sql.collections import append_audit
 from partwise.store.sql.drafts import close_draft, locked_draft, refuse_closed, refuse_unseen_head, stale
 from partwise.store.sql.events import append_events
-from partwise.store.sql.labels import commit_revision, head_revisions
+from partwise.store.sql.labels import commit_revision, head_revisions, labelled_event
 from partwise.store.sql.places import collection_queue_settings
 from partwise.store.sql.reviews import lock_labels
 
@@ -53,7 +53,7 @@ def confirm_draft(connection: Connection, new: NewConfirmation, now: datetime) -
     confirmation, events = _commit(connection, draft, new, sha256, now)
     if lease is not None:
         events.append(leases.end(connection, lease, LeaseOutcome.COMPLETED, now)[1])
-    close_draft(connection, draft.id, DraftOutcome.CONFIRMED, sha256, now)
+    close_draft(connection, draft.id, DraftOutcome.CONFIRMED, sha256, now, new.cost)
     name = leases.person_name(connection, draft.person_id)
     detail = {
         "shape_id": draft.shape_id,
@@ -144,7 +144,7 @@ def _commit(
         answer = answers.add_answer(connection, draft, new.labels, now)
         if new.blind_check is not None:
             answers.add_blind_check(connection, draft, answer.id, new.blind_check, now)
-        return Confirmation(draft.id, draft.shape_id, sha256, None, answer.id, None), []
+        return Confirmation(draft.id, draft.shape_id, sha256, None, answer.id, None), [_labelled(draft)]
     refuse_unseen_head(connection, draft)
     if draft.purpose is LeasePurpose.INDEPENDENT:
         return _commit_answer(connection, draft, new, sha256, now)
@@ -152,6 +152,10 @@ def _commit(
     review = NewReview(ReviewReason.CHECK, {"draft_id": draft.id}) if needs_check else None
     revision_id, review_id, events = _commit_revision(connection, draft, draft.person_id, new.labels, review, now)
     return Confirmation(draft.id, draft.shape_id, sha256, revision_id, None, review_id), events
+
+
+def _labelled(draft: Draft) -> NewEvent:
+    return labelled_event(draft.collection_id, draft.shape_id)
 
 
 def _commit_revision(
@@ -191,7 +195,7 @@ def _commit_answer(
         raise stale(connection, draft, message)
     own = answers.add_answer(connection, draft, new.labels, now)
     if new.consensus is None:
-        return Confirmation(draft.id, draft.shape_id, sha256, None, own.id, None), []
+        return Confirmation(draft.id, draft.shape_id, sha256, None, own.id, None), [_labelled(draft)]
     return _settle(connection, draft, new, [*peers, own], now)
 
 

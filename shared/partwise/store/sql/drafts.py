@@ -8,6 +8,7 @@ from typing import Any
 from sqlalchemy import Connection, Row, insert, select, update
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError, StaleDraftError
+from partwise.labels.annotation_cost import AnnotationCost
 from partwise.labels.stroke_json import stroke_to_document
 from partwise.labels.strokes import Stroke
 from partwise.store import tables as t
@@ -168,9 +169,16 @@ def discard_draft(connection: Connection, draft_id: int, person_id: int, now: da
 
 
 def close_draft(
-    connection: Connection, draft_id: int, outcome: DraftOutcome, labels_sha256: str | None, now: datetime
+    connection: Connection,
+    draft_id: int,
+    outcome: DraftOutcome,
+    labels_sha256: str | None,
+    now: datetime,
+    cost: AnnotationCost | None = None,
 ) -> Draft:
     values = {"closed_at": now, "updated_at": now, "outcome": outcome.value, "labels_sha256": labels_sha256}
+    if cost is not None:
+        values |= {"active_s": cost.active_s, "n_clicks": cost.clicks}
     statement = update(t.draft).where(t.draft.c.id == draft_id).values(values).returning(t.draft)
     return to_draft(connection.execute(statement).one())
 

@@ -96,8 +96,12 @@ def _after_commit(
         close_places(connection, committed.shape_id)
         if committed.kind is RevisionKind.HUMAN and state == ShapeState.CONFIRMED:
             events = count_confirmed(connection, collection_id, now)
-    payload = {"shape_id": committed.shape_id, "state": state, "revision_id": committed.id}
-    return [*events, NewEvent(EventKind.SHAPE, collection_id, payload)]
+    return [*events, labelled_event(collection_id, committed.shape_id)]
+
+
+def labelled_event(collection_id: int, shape_id: int) -> NewEvent:
+    """Says that somebody handed in labels of a shape: the same whatever became of them."""
+    return NewEvent(EventKind.SHAPE, collection_id, {"shape_id": shape_id, "what": "labelled"})
 
 
 def _note_parts(

@@ -3,12 +3,13 @@
 from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import BigInteger, Connection, bindparam, cast, delete, exists, func, select, update
+from sqlalchemy import BigInteger, Connection, Row, bindparam, cast, delete, exists, func, select, update
 
 from partwise.errors import ConflictError, NotFoundError
 from partwise.store import tables as t
-from partwise.store.queue_settings import QueueSettings, queue_settings_of
+from partwise.store.queue_settings import MAX_LABELS_PER_SHAPE, QueueSettings, queue_settings_of
 from partwise.store.records import EventKind, LeasePurpose, NewEvent, QueueDepth, ShapeState
 from partwise.store.sql import leases
 from partwise.store.sql.collections import append_audit
@@ -148,7 +149,7 @@ def set_ranks(connection: Connection, collection_id: int, ranks: Mapping[int, in
         # what a claim is just taking is passed over: nobody waits for a ranking, and it waits for nobody
         query = (
             select(place.c.shape_id, place.c.slot, place.c.rank)
-            .where(place.c.collection_id == collection_id, place.c.shape_id.in_(some))
+            .where(place.c.collection_id == collection_id, place.c.shape_id.in_(some), place.c.rank != FIRST)
             .with_for_update(skip_locked=True)
         )
         moved = [
@@ -162,6 +163,22 @@ def set_ranks(connection: Connection, collection_id: int, ranks: Mapping[int, in
             connection.execute(update(place).where(is_it).values(rank=new_rank), moved)
             n_moved += len(moved)
     return n_moved
+
+
+def following_places(connection: Connection, place: Row[Any], n_wanted: int) -> list[Row[Any]]:
+    """The next free places of other shapes that anybody may have, from the rank of this one on: one for each shape."""
+    other = t.queue_rank.c
+    query = (
+        select(t.queue_rank)
+        .where(other.collection_id == place.collection_id, other.lease_id.is_(None), other.person_id.is_(None))
+        .where(other.rank >= place.rank, other.shape_id != place.shape_id)
+        .order_by(other.rank, other.shape_id, other.slot)
+        .limit(n_wanted * MAX_LABELS_PER_SHAPE)
+    )
+    found: dict[int, Row[Any]] = {}
+    for row in connection.execute(query):
+        found.setdefault(row.shape_id, row)
+    return list(found.values())[:n_wanted]
 
 
 def waiting_shapes(connection: Connection, collection_id: int, after: int, limit: int) -> list[int]:

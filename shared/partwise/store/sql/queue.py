@@ -18,8 +18,9 @@ from partwise.store.records import (
 from partwise.store.sql import leases
 from partwise.store.sql.events import append_events
 from partwise.store.sql.honeypots import claim_honeypot
-from partwise.store.sql.places import collection_queue_settings, current_round
+from partwise.store.sql.places import collection_queue_settings, current_round, following_places
 from partwise.store.sql.shapes import refuse_unknown_shapes
+from partwise.store.sql.told import told_instead, told_of
 
 _TRIES = 20  # each fails only if someone took the very same place in the same moment
 
@@ -42,7 +43,8 @@ def claim_next(connection: Connection, claim: NewClaim, now: datetime) -> Lease 
             leases.refuse_another(connection, claim.person_id)
         taken = None
         if claim.draw < settings.honeypot_share:
-            taken = claim_honeypot(connection, claim, claim.draw / settings.honeypot_share, now)
+            place = _first_free_place(connection, claim, is_waiting=False)
+            taken = claim_honeypot(connection, claim, claim.draw / settings.honeypot_share, place, now)
         taken = taken or _claim_by_rank(connection, claim, now)
         if taken is not None:
             events.append(leases.queue_event(taken, "claimed"))
@@ -106,6 +108,7 @@ def _take(
     is_prefetched: bool = False,
 ) -> Lease | None:
     values = {
+        **_told(connection, place),
         "collection_id": place.collection_id,
         "shape_id": place.shape_id,
         "slot": place.slot,
@@ -118,6 +121,17 @@ def _take(
         is_it = and_(t.queue_rank.c.shape_id == place.shape_id, t.queue_rank.c.slot == place.slot)
         connection.execute(update(t.queue_rank).where(is_it).values(lease_id=taken.id))
     return taken
+
+
+def _told(connection: Connection, place: Row[Any]) -> dict[str, Any]:
+    """What is told of a place; of one that checks a model's labels what is told of those about it."""
+    is_check = (t.recheck.c.shape_id == place.shape_id) & t.recheck.c.checked_at.is_(None)
+    neighbours = []
+    if connection.execute(select(t.recheck.c.id).where(is_check)).first() is not None:
+        neighbours = [each.shape_id for each in following_places(connection, place, 2)]
+    if neighbours:
+        return told_instead(connection, place, neighbours)
+    return told_of(connection, place.collection_id, place.shape_id, place)
 
 
 def claim_shape(connection: Connection, shape_id: int, person_id: int, lease_s: float, now: datetime) -> Lease:
@@ -149,6 +163,7 @@ def take_by_name(connection: Connection, shape_id: int, person_id: int, lease_s:
         taken = _take(connection, found, person_id, lease_s, now)
     else:
         values = {
+            **told_of(connection, facet.collection_id, shape_id, None),
             "collection_id": facet.collection_id,
             "shape_id": shape_id,
             "slot": 0,

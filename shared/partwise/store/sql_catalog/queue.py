@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import leases, places, queue
+from partwise.store.sql import leases, places, queue, told
+from partwise.store.sql.collections import schema_version
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -63,6 +64,16 @@ class SqlQueueCatalog(SqlBase):
     def set_ranks(self, collection_id: int, ranks: Mapping[int, int]) -> int:
         with writing(self._engine) as connection:
             return places.set_ranks(connection, collection_id, ranks)
+
+    def record_ranking(self, collection_id: int, score_name: str) -> None:
+        with writing(self._engine) as connection:
+            schema_version(connection, collection_id)
+            told.record_ranking(connection, collection_id, score_name, self._clock())
+
+    def ranking_score(self, collection_id: int) -> str:
+        with reading(self._engine) as connection:
+            schema_version(connection, collection_id)
+            return told.ranking_score(connection, collection_id)
 
     def waiting_shapes(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[int]:
         with reading(self._engine) as connection:

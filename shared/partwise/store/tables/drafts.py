@@ -40,6 +40,8 @@ draft = Table(
     Column("closed_at", UtcDateTime),
     Column("outcome", String(16)),
     Column("labels_sha256", String(64)),
+    Column("active_s", Double),
+    Column("n_clicks", Integer),
     ForeignKeyConstraint(["shape_id", "mesh_hash"], ["shape_mesh.shape_id", "shape_mesh.mesh_hash"]),
     CheckConstraint("(closed_at IS NULL) = (outcome IS NULL)", name="closed_has_outcome"),
     Index(None, "shape_id", "mesh_hash"),
@@ -48,6 +50,14 @@ draft = Table(
 _IS_OPEN = text("closed_at IS NULL")
 Index(
     "uq_draft_open", draft.c.person_id, draft.c.shape_id, unique=True, sqlite_where=_IS_OPEN, postgresql_where=_IS_OPEN
+)
+_IS_CONFIRMED = text("outcome = 'confirmed'")
+Index(
+    "ix_draft_confirmed",
+    draft.c.collection_id,
+    draft.c.closed_at,
+    sqlite_where=_IS_CONFIRMED,
+    postgresql_where=_IS_CONFIRMED,
 )
 
 stroke = Table(  # triggers refuse UPDATE and DELETE

@@ -28,6 +28,24 @@ score = Table(  # the latest of each name only: history of every shape under eve
     Column("scored_at", UtcDateTime, nullable=False),
     Column("collection_id", ForeignKey("collection.id"), nullable=False),
     Index(None, "collection_id", "name", "value", "shape_id"),
+    Index(None, "collection_id", "name", "model_id"),
+)
+
+score_tally = Table(  # how the scores were that a model gave, which newer models' take the place of
+    "score_tally",
+    metadata,
+    Column("model_id", ForeignKey("model.id"), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("n_scores", Integer, nullable=False),
+    Column("total", Double, nullable=False),
+)
+
+ranking = Table(  # what a collection's queue was ranked by last
+    "ranking",
+    metadata,
+    Column("collection_id", ForeignKey("collection.id"), primary_key=True),
+    Column("score_name", String(64), nullable=False),
+    Column("ranked_at", UtcDateTime, nullable=False),
 )
 
 first_shape = Table(

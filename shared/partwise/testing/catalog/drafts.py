@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError, StaleDraftError
+from partwise.labels.annotation_cost import AnnotationCost
 from partwise.labels.stroke_json import stroke_from_document
 from partwise.store.catalog import Catalog
 from partwise.store.records import (
     Closeness,
     Collection,
     DraftOutcome,
+    EventKind,
     JobKind,
     JobState,
     Lease,
     LeaseOutcome,
+    LeasePurpose,
     NewBlindCheck,
     NewConfirmation,
     NewConsensus,
@@ -372,6 +375,31 @@ class DraftConformance:
         (check,) = catalog.blind_checks(collection.id)
         assert (check.person_id, check.reference_id, check.closeness) == (lease.person_id, reference.id, FAR)
         assert catalog.waiting_shapes(collection.id) == [known]
+
+    @pytest.mark.parametrize("is_blind", [False, True])
+    def test_events_do_not_say_what_work_was_for(self, catalog: Catalog, is_blind: bool) -> None:
+        collection, (known, _) = ready_shapes(catalog, 2)
+        label(catalog, known, RevisionKind.REFERENCE)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": float(is_blind), "train_after": 0})
+        lease = claim(catalog, collection, catalog.list_people()[0])
+        assert (lease.purpose is LeasePurpose.BLIND) == is_blind
+        before = catalog.event_bounds().newest
+        confirm(catalog, lease)
+        told = [(each.kind, dict(each.payload)) for each in catalog.events(after=before)]
+        assert told == [
+            (EventKind.SHAPE, {"shape_id": known, "what": "labelled"}),
+            (EventKind.QUEUE, {"shape_id": known, "person_id": lease.person_id, "what": "completed"}),
+            (EventKind.PEOPLE, {"person_id": lease.person_id, "what": "confirmed"}),
+        ]
+
+    def test_what_a_draft_cost_is_on_record(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        lease = claim(catalog, collection, catalog.add_person("ann"))
+        draft = blank_draft(catalog, lease)
+        cost = AnnotationCost(strokes=2, commands=1, undos=1, redos=0, active_s=12.5, n_idle_gaps=0)
+        catalog.confirm_draft(NewConfirmation(draft.id, draft.person_id, 0, np.ones(6, int), 1, cost=cost))
+        confirmed = catalog.draft(draft.id)
+        assert (confirmed.active_s, confirmed.n_clicks) == (12.5, 4)
 
     def test_shares_are_shares(self, catalog: Catalog) -> None:  # noqa: ARG002 # the suite's signature
         for wrong in ((1.5, 0.0, 0.0), (0.0, -0.1, 0.0), (0.0, 0.0, float("nan"))):

@@ -8,12 +8,14 @@ import pytest
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store.catalog import Catalog
 from partwise.store.records import (
+    DEFAULT_RANKING,
     MAX_HELD,
     FirstShape,
     LeaseOutcome,
     LeasePurpose,
     NewClaim,
     NewFailure,
+    NewScore,
     NewShape,
     RevisionKind,
 )
@@ -278,6 +280,52 @@ class QueueConformance:
         plain = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.5))
         assert plain is not None
         assert (plain.shape_id, plain.purpose) == (first, LeasePurpose.LABEL)
+
+    def test_a_lease_tells_the_rank_and_the_score_that_ranks(self, catalog: Catalog) -> None:
+        collection, (first, second, third) = ready_shapes(catalog, 3)
+        model = save_model(catalog, collection.id)
+        scores = {first: 0.1, second: 0.3, third: 0.2}
+        catalog.record_done([], [NewScore(i, model.id, "bald", value) for i, value in scores.items()])
+        assert catalog.ranking_score(collection.id) == DEFAULT_RANKING
+        catalog.set_ranks(collection.id, {first: 3, second: 1, third: 2})
+        ann = catalog.add_person("ann")
+        named = catalog.claim_shape(first, ann.id, 60)
+        assert (named.rank, named.score_name, named.score) == (3, None, None)
+        catalog.record_ranking(collection.id, "bald")
+        assert catalog.ranking_score(collection.id) == "bald"
+        lease = claim(catalog, collection, ann)
+        assert (lease.shape_id, lease.rank, lease.score_name, lease.score) == (second, 1, "bald", 0.3)
+        assert lease.model_version == model.version
+        assert catalog.leases_of(ann.id)[1] == lease
+
+    def test_blind_work_tells_what_other_work_would(self, catalog: Catalog) -> None:
+        collection, (first, second, third, known) = ready_shapes(catalog, 4)
+        model = save_model(catalog, collection.id)
+        scores = {first: 0.9, second: 0.8, third: 0.7, known: 0.01}
+        catalog.record_done([], [NewScore(i, model.id, "entropy", value) for i, value in scores.items()])
+        catalog.set_ranks(collection.id, {first: 1, second: 2, third: 3, known: 4})
+        label(catalog, known, RevisionKind.REFERENCE)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 0.5})
+        ann = catalog.list_people()[0]
+        blind = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.1))
+        plain = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.9))
+        assert blind is not None
+        assert plain is not None
+        assert (blind.shape_id, plain.shape_id) == (known, first)
+        assert (blind.rank, blind.score_name, blind.model_version) == (1, "entropy", 1)
+        assert blind.score == pytest.approx(0.85)
+        assert (plain.rank, plain.score) == (1, 0.9)
+
+    def test_only_what_waits_like_all_else_is_served_blind(self, catalog: Catalog) -> None:
+        collection, (confirmed, assigned, other) = ready_shapes(catalog, 3)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 1.0})
+        for shape_id in (confirmed, assigned):
+            label(catalog, shape_id, RevisionKind.REFERENCE)
+        ann, ben = catalog.list_people()[0], catalog.add_person("ben")
+        label(catalog, confirmed)
+        catalog.assign_shapes([assigned], ben.id, ann.id)
+        lease = claim(catalog, collection, ann)
+        assert (lease.shape_id, lease.purpose) == (other, LeasePurpose.LABEL)
 
     def test_nobody_is_checked_twice_with_one_shape(self, catalog: Catalog) -> None:
         collection, (known, other) = ready_shapes(catalog, 2)
