@@ -64,9 +64,10 @@ export class SurfaceMesh {
     return this.#graph;
   }
 
-  /** Takes the adjacency that a worker made of this very mesh. */
-  adoptGraph(arrays: FaceGraphArrays): void {
-    this.#graph ??= new FaceGraph(arrays);
+  /** Takes what a worker computed of this very mesh. */
+  adopt(measures: FaceMeasures, graph: FaceGraphArrays): void {
+    this.#measures ??= measures;
+    this.#graph ??= new FaceGraph(graph);
   }
 
   #measured(): FaceMeasures {

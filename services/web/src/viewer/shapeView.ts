@@ -1,0 +1,219 @@
+/** One viewport: a camera on a shape, moved by pointer and keys, and the gestures of the tool in hand. */
+import { PerspectiveCamera, type Quaternion, Ray, Vector3, type WebGLRenderer } from "three";
+import { NavigationKeys } from "./navigationKeys";
+import { PointerGestures } from "./pointerGestures";
+import {
+  FIELD_OF_VIEW,
+  framed,
+  type Manner,
+  moved,
+  type NamedView,
+  namedOrientation,
+  type Pose,
+  turned,
+  type UpAxis,
+  uprightRotation,
+  zoomed,
+} from "./pose";
+import type { Hit, ShapeModel } from "./shapeModel";
+
+export interface ViewOptions {
+  readonly up: UpAxis;
+  readonly manner?: Manner;
+}
+
+/** What a view tells its stage. */
+export interface StageOfView {
+  invalidate(): void;
+  inputAt(time: number): void;
+  moved(view: ShapeView): void;
+  removed(view: ShapeView): void;
+}
+
+/** What a view tells whoever works with it. */
+export interface ViewListener {
+  /** The pointer is over the surface, or (null) no longer. */
+  hover?(hit: Hit | null, event: PointerEvent): void;
+  strokeStart?(hit: Hit, event: PointerEvent): void;
+  /** Further hits of a drag, in order; a face is told once in a row. */
+  strokeMove?(hits: readonly Hit[], event: PointerEvent): void;
+  strokeEnd?(): void;
+  /** The drag was given up (Escape, a second finger): nothing of it counts. */
+  strokeCancel?(): void;
+  cameraChange?(pose: Pose): void;
+}
+
+export class ShapeView {
+  readonly element: HTMLElement;
+  /** `stroke`: pressing on the surface draws. `navigate`: every gesture moves the camera. */
+  tool: "navigate" | "stroke" = "navigate";
+  manner: Manner;
+  /** Least distance between hits of a drag, as a share of the diagonal: a quarter of the brush's radius, say. */
+  strokeSpacing = 0;
+  readonly #stage: StageOfView;
+  readonly #upright: Quaternion;
+  readonly #camera = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI);
+  readonly #listeners = new Set<ViewListener>();
+  readonly #controls: readonly { remove(): void }[];
+  #model: ShapeModel | null = null;
+  #pose: Pose = { orientation: namedOrientation("threeQuarter"), offset: new Vector3(), distance: 2.4 };
+  #hasDrawn = false;
+
+  constructor(element: HTMLElement, { up, manner = "turntable" }: ViewOptions, stage: StageOfView) {
+    this.element = element;
+    this.manner = manner;
+    this.#stage = stage;
+    this.#upright = uprightRotation(up);
+    this.#controls = [new PointerGestures(this), new NavigationKeys(this)];
+  }
+
+  get model(): ShapeModel | null {
+    return this.#model;
+  }
+
+  get pose(): Pose {
+    return this.#pose;
+  }
+
+  set pose(pose: Pose) {
+    this.follow(pose);
+    this.#stage.moved(this);
+  }
+
+  /** Takes a pose without leading others by it. */
+  follow(pose: Pose): void {
+    this.#pose = pose;
+    this.#stage.invalidate();
+    this.tell((listener) => listener.cameraChange?.(pose));
+  }
+
+  /** Shows a shape, or none. Another shape than before is framed, unless `keepsPose`. */
+  show(model: ShapeModel | null, { keepsPose = false } = {}): void {
+    if (model === this.#model) return;
+    this.#model?.changed.delete(this.#stage.invalidate);
+    model?.changed.add(this.#stage.invalidate);
+    this.#model = model;
+    this.#hasDrawn = false;
+    if (model !== null && !keepsPose) this.frame();
+    this.#stage.invalidate();
+  }
+
+  /** The whole shape closely in view, from where the camera looks now or as named. */
+  frame(name?: NamedView): void {
+    if (this.#model === null) return;
+    const orientation = name === undefined ? this.#pose.orientation : namedOrientation(name);
+    this.pose = framed(orientation, this.#points(this.#model), this.#aspect());
+  }
+
+  turn(right: number, down: number): void {
+    this.pose = turned(this.#pose, right, down, this.manner);
+  }
+
+  /** By heights of the view. */
+  move(right: number, up: number): void {
+    this.pose = moved(this.#pose, right, up);
+  }
+
+  /** Nearer (factor < 1) or farther, about a point of the page or the middle. */
+  zoom(factor: number, clientX?: number, clientY?: number): void {
+    const box = this.element.getBoundingClientRect();
+    const right = clientX === undefined ? 0 : (clientX - box.left - box.width / 2) / box.height;
+    const up = clientY === undefined ? 0 : -(clientY - box.top - box.height / 2) / box.height;
+    this.pose = zoomed(this.#pose, factor, right, up);
+  }
+
+  /** What is at a point of the page; null beside the shape. */
+  pick(clientX: number, clientY: number): Hit | null {
+    const box = this.element.getBoundingClientRect();
+    const x = ((clientX - box.left) / box.width) * 2 - 1;
+    const y = 1 - ((clientY - box.top) / box.height) * 2;
+    if (this.#model === null || !(Math.abs(x) <= 1 && Math.abs(y) <= 1)) return null;
+    this.#aimCamera(this.#model, box.width / box.height);
+    const point = new Vector3(x, y, 0.5).unproject(this.#camera);
+    return this.#model.hit(
+      new Ray(this.#camera.position.clone(), point.sub(this.#camera.position).normalize()),
+    );
+  }
+
+  /** What is in the middle of the view: what keys act on. */
+  centreHit(): Hit | null {
+    const box = this.element.getBoundingClientRect();
+    return this.pick(box.left + box.width / 2, box.top + box.height / 2);
+  }
+
+  /** Tells `listener` of gestures until the returned function is called. */
+  listen(listener: ViewListener): () => void {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+
+  /** For the parts of a view: passes something on to all listeners. */
+  tell(what: (listener: ViewListener) => void, inputAt?: number): void {
+    if (inputAt !== undefined) this.#stage.inputAt(inputAt);
+    for (const listener of this.#listeners) what(listener);
+  }
+
+  /** Draws into this view's part of the canvas. canvas : its rectangle on the page. */
+  draw(renderer: WebGLRenderer, canvas: DOMRect): void {
+    const box = this.element.getBoundingClientRect();
+    const model = this.#model;
+    if (model === null || box.width < 1 || box.height < 1) return;
+    const bottom = canvas.bottom - box.bottom;
+    renderer.setViewport(box.left - canvas.left, bottom, box.width, box.height);
+    renderer.setScissor(box.left - canvas.left, bottom, box.width, box.height);
+    this.#aimCamera(model, box.width / box.height);
+    const up = new Vector3(0, 1, 0).applyQuaternion(this.#pose.orientation.clone().invert());
+    model.aim(up, renderer.getPixelRatio());
+    renderer.render(model.scene, this.#camera);
+    if (!this.#hasDrawn && model.since !== null) {
+      performance.measure("partwise:first-paint", { start: model.since, end: performance.now() });
+    }
+    this.#hasDrawn = true;
+  }
+
+  /** Ends the view. The element stays. */
+  remove(): void {
+    this.show(null);
+    for (const control of this.#controls) control.remove();
+    this.#listeners.clear();
+    this.#stage.removed(this);
+  }
+
+  #aspect(): number {
+    const { width, height } = this.element.getBoundingClientRect();
+    return width > 0 && height > 0 ? width / height : 1;
+  }
+
+  #aimCamera({ mesh }: ShapeModel, aspect: number): void {
+    const { orientation, offset, distance } = this.#pose;
+    const camera = this.#camera;
+    camera.aspect = aspect;
+    camera.quaternion.copy(this.#upright).multiply(orientation);
+    const fromCentre = new Vector3(0, 0, distance).applyQuaternion(orientation).add(offset);
+    camera.near = Math.max(fromCentre.length() - 0.6, distance * 0.02) * mesh.diagonal;
+    camera.far = (fromCentre.length() + 0.6) * mesh.diagonal;
+    camera.position.copy(fromCentre).applyQuaternion(this.#upright).multiplyScalar(mesh.diagonal);
+    camera.position.add(new Vector3(...mesh.centre));
+    camera.updateMatrixWorld();
+    camera.updateProjectionMatrix();
+  }
+
+  /** The vertices from the middle, in diagonals, right, up, front. */
+  *#points({ mesh }: ShapeModel): Iterable<Vector3> {
+    const back = this.#upright.clone().invert();
+    const [x, y, z] = mesh.centre;
+    const point = new Vector3();
+    for (const vertex of mesh.faces) {
+      const at = 3 * vertex;
+      point.set(
+        mesh.vertices[at] as number,
+        mesh.vertices[at + 1] as number,
+        mesh.vertices[at + 2] as number,
+      );
+      point.x -= x;
+      point.y -= y;
+      point.z -= z;
+      yield point.divideScalar(mesh.diagonal).applyQuaternion(back);
+    }
+  }
+}
