@@ -1,6 +1,117 @@
+import { useQuery, useQueryClient } from "@tanstack/react-query";
+import { useCallback, useEffect, useMemo, useState } from "react";
+import { useLocation } from "wouter";
+import { partsQuery } from "../../api/queries";
 import { RoomHeading } from "../../app/RoomHeading";
-import type { RoomProps } from "../../app/rooms";
+import { roomAddress } from "../../app/rooms";
+import { Button } from "../../components";
+import { MAX_OPEN } from "./actions/limits";
+import { SelectionBar } from "./actions/SelectionBar";
+import type { TileLook } from "./grid/ShapeTile";
+import { useLiveRows } from "./live/useLiveRows";
+import type { ShapeRow } from "./rows/shapeRows";
+import { listKey, ordersQuery } from "./rows/tableQueries";
+import { useRange } from "./rows/useRange";
+import { useShapeRows } from "./rows/useShapeRows";
+import { ShapeList, useWindow } from "./ShapeList";
+import { SidePanel } from "./SidePanel";
+import { useSelection } from "./selection/useSelection";
+import styles from "./TableRoom.module.css";
+import { FilterChips } from "./toolbar/FilterChips";
+import { TableToolbar } from "./toolbar/TableToolbar";
+import { TrainingLine } from "./toolbar/TrainingLine";
+import { countFilters, NO_FILTERS } from "./view/tableView";
+import { useTableView } from "./view/useTableView";
 
-export function TableRoom({ collectionId }: RoomProps) {
-  return <RoomHeading title="Table">{`Table of collection ${collectionId}`}</RoomHeading>;
+/** Every shape of a collection: what is labelled, what to label next, and what to do with many at once. */
+export function TableRoom({ collectionId }: { collectionId: number }) {
+  const state = useTableView();
+  const { view } = state;
+  const [generation, setGeneration] = useState(0);
+  const { filters, order, descending } = view;
+  const list = useMemo(
+    () => ({ collectionId, filters, order, descending, generation }),
+    [collectionId, filters, order, descending, generation],
+  );
+  const [window, onWindow] = useWindow();
+  const rows = useShapeRows(list, window.first, window.last);
+  const isReordered = useLiveRows(list);
+  const readRange = useRange(list);
+  const selection = useSelection(readRange);
+  const look = useTileLook(collectionId, view);
+  const open = useOpen(collectionId);
+  const client = useQueryClient();
+  const showNew = () => {
+    client.removeQueries({ queryKey: listKey(list) });
+    client.invalidateQueries({ queryKey: ["table", collectionId, "count"] });
+    setGeneration((held) => held + 1);
+  };
+  const { none } = selection;
+  // biome-ignore lint/correctness/useExhaustiveDependencies: another list begins with nothing chosen
+  useEffect(() => none(), [view.filters, collectionId]);
+
+  return (
+    <div className={styles.room}>
+      <RoomHeading title="Table" isUnseen />
+      <div className={styles.main}>
+        <TableToolbar collectionId={collectionId} state={state} nShapes={rows.nShapes} nReviews={null} />
+        <div className={styles.filterBar}>
+          <FilterChips collectionId={collectionId} filters={view.filters} onFilter={state.filter} />
+          <TrainingLine collectionId={collectionId} />
+        </div>
+        <section className={styles.list} aria-label="List of shapes">
+          {isReordered && (
+            <div className={styles.reordered} role="status">
+              <span>The order has changed</span>
+              <Button size="small" variant="primary" onClick={showNew}>
+                Show
+              </Button>
+            </div>
+          )}
+          <ShapeList
+            key={JSON.stringify([list.filters, list.order, list.descending])}
+            {...{ list, rows, look, selection, onWindow }}
+            isFiltered={countFilters(view.filters) > 0}
+            onOpen={open}
+            onClearFilters={() => state.filter(NO_FILTERS)}
+          />
+          <SelectionBar collectionId={collectionId} selection={selection} onOpen={open} />
+        </section>
+      </div>
+      <SidePanel collectionId={collectionId} state={state} selection={selection} />
+    </div>
+  );
+}
+
+function useTileLook(
+  collectionId: number,
+  { shown, size, order }: ReturnType<typeof useTableView>["view"],
+): TileLook {
+  const parts = useQuery(partsQuery(collectionId)).data;
+  const orders = useQuery(ordersQuery(collectionId)).data?.items;
+  const partsVersion = parts?.parts.map((part) => part.colour.slice(1)).join("") ?? "";
+  const isScore = order !== null && order !== "name";
+  const scoreName = isScore ? (orders?.find((each) => each.name === order)?.label ?? order) : null;
+  return useMemo(
+    () => ({ shown, size, scoreName, partsVersion: digest(partsVersion) }),
+    [shown, size, scoreName, partsVersion],
+  );
+}
+
+/** A short name of the colours, so that pictures are drawn anew when any changes. */
+function digest(text: string): string {
+  let sum = 0;
+  for (const letter of text) sum = (Math.imul(sum, 31) + letter.charCodeAt(0)) >>> 0;
+  return sum.toString(36);
+}
+
+function useOpen(collectionId: number): (rows: readonly ShapeRow[]) => void {
+  const [, navigate] = useLocation();
+  return useCallback(
+    (rows) => {
+      const ids = rows.slice(0, MAX_OPEN).map((row) => row.id);
+      navigate(`${roomAddress(collectionId, "work")}?shapes=${ids.join(",")}`);
+    },
+    [collectionId, navigate],
+  );
 }

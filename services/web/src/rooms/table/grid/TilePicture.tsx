@@ -1,0 +1,37 @@
+import { Box, CircleAlert, ImageOff } from "lucide-react";
+import { useEffect, useRef, useState } from "react";
+import styles from "./ShapeTile.module.css";
+
+/** A shape's picture. It is asked for when it comes near, and no longer once it has been scrolled past. */
+export function TilePicture({ address, isFailed }: { address: string | null; isFailed: boolean }) {
+  const [missing, setMissing] = useState<string | null>(null);
+  const image = useRef<HTMLImageElement>(null);
+  useEffect(() => {
+    const shown = image.current;
+    if (shown === null || address === null) return undefined;
+    shown.src = address;
+    // Taking an image out of the page does not stop its download; taking its address does.
+    return () => shown.removeAttribute("src");
+  }, [address]);
+  if (address === null || missing === address) {
+    const Icon = isFailed ? CircleAlert : address === null ? Box : ImageOff;
+    return (
+      <span className={styles.noPicture}>
+        <Icon aria-hidden="true" />
+        <span>{isFailed ? "Failed" : address === null ? "Not prepared yet" : "No picture yet"}</span>
+      </span>
+    );
+  }
+  return (
+    <img
+      ref={image}
+      className={styles.picture}
+      alt=""
+      draggable={false}
+      loading="lazy"
+      decoding="async"
+      fetchPriority="low"
+      onError={() => setMissing(address)}
+    />
+  );
+}
