@@ -51,6 +51,7 @@ def serve(
     person: Annotated[
         str | None, typer.Option(help="Who the printed address logs in.", show_default="who starts it")
     ] = None,
+    login: Annotated[bool, typer.Option(help="Print an address that logs in.")] = True,
 ) -> None:
     """Let people work in a browser.  [dim]partwise serve ws --port 8000[/dim]"""
     import uvicorn
@@ -71,9 +72,10 @@ def serve(
         timeout_graceful_shutdown=STOP_S,
     )
     with _listening(settings) as listener:
-        code = _login_code(settings, person or getpass.getuser())
-        typer.echo(f"{settings.origin}/#code={code}")
-        typer.echo(f"opens the page once, within {settings.login_code_s / 60:g} minutes; Ctrl-C ends the service")
+        if login:
+            code = _login_code(settings, person or getpass.getuser())
+            typer.echo(f"{settings.origin}/#code={code}")
+            typer.echo(f"opens the page once, within {settings.login_code_s / 60:g} minutes; Ctrl-C ends the service")
         with suppress(KeyboardInterrupt):  # how it is meant to end
             uvicorn.Server(config).run(sockets=[listener])
 

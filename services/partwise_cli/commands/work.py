@@ -15,8 +15,37 @@ if TYPE_CHECKING:
 
 def register(app: typer.Typer) -> None:
     """Adds the commands of this module."""
-    for command in (work,):
+    for command in (up, work):
         app.command(rich_help_panel="People at work")(command)
+
+
+def up(
+    ws: WorkspaceArgument,
+    host: Annotated[str | None, typer.Option(help="Address to listen on.", show_default="127.0.0.1")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on.", show_default="8000")] = None,
+    public_url: Annotated[
+        str | None, typer.Option(help="How browsers reach it, if not so.", show_default=False)
+    ] = None,
+    person: Annotated[
+        str | None, typer.Option(help="Who the printed address logs in.", show_default="who starts it")
+    ] = None,
+) -> None:
+    """Service and worker on this machine.  [dim]partwise up ws[/dim]"""
+    from partwise_cli.supervisor import Command, CommandEndedError, Supervisor
+
+    given = {"--host": host, "--port": port, "--public-url": public_url, "--person": person}
+    options = [text for name, value in given.items() if value is not None for text in (name, str(value))]
+    serve = ["serve", str(ws), *options]
+    commands = [
+        Command("service", serve, [*serve, "--no-login"]),
+        Command("worker", ["work", str(ws)], ["work", str(ws)]),
+    ]
+    interrupt_on_sigterm()
+    try:
+        with suppress(KeyboardInterrupt):  # how it is meant to end
+            Supervisor(commands, typer.echo).run()
+    except CommandEndedError as ended:  # it has said why
+        raise typer.Exit(ended.code) from ended
 
 
 def work(

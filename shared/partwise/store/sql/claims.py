@@ -24,6 +24,7 @@ def claim_job(
         "attempts": t.job.c.attempts + 1,
         "started_at": now,
         "heartbeat_at": now,
+        "message": "",  # of the time before, if there was one
     }
     if row.kind == JobKind.TRAIN:
         restart_count(connection, row.collection_id)
