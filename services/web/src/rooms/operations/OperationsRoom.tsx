@@ -1,6 +1,40 @@
 import { RoomHeading } from "../../app/RoomHeading";
 import type { RoomProps } from "../../app/rooms";
+import { Button, Notice, Skeleton } from "../../components";
+import { FailuresPanel } from "./failures/FailuresPanel";
+import { JobsPanel } from "./jobs/JobsPanel";
+import { KeyFigures } from "./KeyFigures";
+import styles from "./OperationsRoom.module.css";
+import { LeasesPanel } from "./queue/LeasesPanel";
+import { QueuePanel } from "./queue/QueuePanel";
+import { StagesPanel } from "./stages/StagesPanel";
+import { useOpsHistory } from "./useOpsHistory";
 
+/** How the machine and the people are doing, what has failed, and what to do about it. */
 export function OperationsRoom({ collectionId }: RoomProps) {
-  return <RoomHeading title="Operations">{`Operations of collection ${collectionId}`}</RoomHeading>;
+  const { ops, history } = useOpsHistory(collectionId);
+  return (
+    <div className={styles.page}>
+      <header className={styles.head}>
+        <RoomHeading title="Operations" />
+      </header>
+      {ops.error && (
+        <Notice
+          kind="error"
+          title={ops.data ? "The figures below are not the newest" : "The figures could not be read"}
+          actions={<Button onClick={() => void ops.refetch()}>Try again</Button>}
+        >
+          {ops.error.message}
+        </Notice>
+      )}
+      {ops.data ? <KeyFigures ops={ops.data} /> : !ops.error && <Skeleton height={74} />}
+      <div className={styles.grid}>
+        <StagesPanel ops={ops.data} history={history} className={styles.whole} />
+        <JobsPanel collectionId={collectionId} className={styles.whole} />
+        <FailuresPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
+        <QueuePanel ops={ops.data} history={history} />
+        <LeasesPanel collectionId={collectionId} />
+      </div>
+    </div>
+  );
 }

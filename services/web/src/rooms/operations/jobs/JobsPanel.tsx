@@ -1,0 +1,62 @@
+import { useInfiniteQuery } from "@tanstack/react-query";
+import { JOB_WORDS } from "../../../app/shell/jobWords";
+import { type Column, DataTable, Panel, Time } from "../../../components";
+import { LoadMore } from "../LoadMore";
+import { PanelError } from "../PanelError";
+import { type Job, jobsQuery } from "../queries";
+import { JobActions } from "./JobActions";
+import { JobStanding } from "./JobStanding";
+import { StartJob } from "./StartJob";
+
+const COLUMNS: readonly Column<Job>[] = [
+  {
+    id: "kind",
+    header: "Job",
+    cell: ({ kind }) => <span title={JOB_WORDS[kind].meaning}>{JOB_WORDS[kind].name}</span>,
+  },
+  { id: "standing", header: "Standing", isWide: true, cell: (job) => <JobStanding job={job} /> },
+  {
+    id: "attempts",
+    header: "Begun",
+    cell: (job) =>
+      job.started_at ? <Time at={job.started_at} /> : <span title="No worker has taken it yet.">–</span>,
+  },
+  {
+    id: "ended",
+    header: "Ended",
+    cell: ({ finished_at }) => (finished_at ? <Time at={finished_at} /> : "–"),
+  },
+  { id: "actions", header: <span className="unseen">Actions</span>, cell: (job) => <JobActions job={job} /> },
+];
+
+/** What workers do and were asked to do, newest first. */
+export function JobsPanel({
+  collectionId,
+  className,
+}: {
+  collectionId: number;
+  className?: string | undefined;
+}) {
+  const jobs = useInfiniteQuery(jobsQuery(collectionId));
+  return (
+    <Panel title="Jobs" className={className} actions={<StartJob collectionId={collectionId} />} isFlush>
+      {jobs.error && !jobs.data ? (
+        <PanelError what="Jobs" error={jobs.error} onRetry={jobs.refetch} />
+      ) : (
+        <DataTable
+          caption="Jobs"
+          columns={COLUMNS}
+          rows={jobs.data?.pages.flatMap((page) => page.items) ?? []}
+          keyOf={(job) => job.id}
+          empty={
+            jobs.isPending
+              ? "Reading…"
+              : "Nothing has been asked for yet. Jobs begin by themselves as people confirm labels."
+          }
+          isBusy={jobs.isPending}
+        />
+      )}
+      <LoadMore pages={jobs} />
+    </Panel>
+  );
+}

@@ -1,0 +1,102 @@
+import { useMemo } from "react";
+import { type Column, DataTable, Panel, Progress, Skeleton } from "../../../components";
+import { decimal, whole } from "../../../components/numbers";
+import { durationInWords } from "../../../components/timeInWords";
+import { Chart } from "../charts/Chart";
+import type { ChartData } from "../charts/LineChart";
+import type { Sample } from "../history";
+import type { Ops } from "../queries";
+import { stageMeaning, stageName } from "../stageWords";
+import { etaInSeconds } from "./eta";
+import styles from "./StagesPanel.module.css";
+
+type Stage = Ops["stages"][number];
+
+interface StagesPanelProps {
+  ops: Ops | undefined;
+  history: readonly Sample[];
+  className?: string | undefined;
+}
+
+/** Each stage's progress, pace and end, and how the pace went. */
+export function StagesPanel({ ops, history, className }: StagesPanelProps) {
+  const nShapes = Object.values(ops?.states ?? {}).reduce((total, n) => total + n, 0);
+  const chart = useMemo(() => paceChart(ops, history), [ops, history]);
+  return (
+    <Panel
+      title="Stages"
+      className={className}
+      description={ops && `Pace is what was done a minute over the last ${whole(ops.window_min)} minutes.`}
+      isFlush
+    >
+      {ops ? (
+        <div className={styles.halves}>
+          <DataTable
+            caption="Stages"
+            columns={columnsOf(nShapes)}
+            rows={ops.stages}
+            keyOf={(stage) => stage.stage}
+            empty="Nothing has run yet. Add files in the settings; stages begin by themselves."
+          />
+          <div className={styles.chart}>
+            <Chart
+              label="Shapes a minute by stage"
+              data={chart}
+              wait="The line begins with the next figures."
+            />
+          </div>
+        </div>
+      ) : (
+        <Skeleton height={220} />
+      )}
+    </Panel>
+  );
+}
+
+function columnsOf(nShapes: number): readonly Column<Stage>[] {
+  const left = ({ done, failed }: Stage) => Math.max(0, nShapes - done - failed);
+  return [
+    {
+      id: "stage",
+      header: "Stage",
+      cell: ({ stage }) => <span title={stageMeaning(stage)}>{stageName(stage)}</span>,
+    },
+    {
+      id: "progress",
+      header: "Progress",
+      isWide: true,
+      cell: ({ stage, done }) => <Progress label={`${stageName(stage)}, done`} value={done} max={nShapes} />,
+    },
+    { id: "done", header: "Done", isNumber: true, cell: ({ done }) => whole(done) },
+    {
+      id: "failed",
+      header: "Failed",
+      isNumber: true,
+      cell: ({ failed }) => <span className={failed > 0 ? styles.failed : undefined}>{whole(failed)}</span>,
+    },
+    { id: "pace", header: "A minute", isNumber: true, cell: ({ per_min }) => decimal(per_min) },
+    {
+      id: "eta",
+      header: "Time left",
+      isNumber: true,
+      cell: (stage) => {
+        if (left(stage) === 0) return "done";
+        const seconds = etaInSeconds(left(stage), stage.per_min);
+        return seconds === null ? <span title="Nothing was done lately.">–</span> : durationInWords(seconds);
+      },
+    },
+  ];
+}
+
+function paceChart(ops: Ops | undefined, history: readonly Sample[]): ChartData {
+  return {
+    x: history.map((sample) => sample.atS),
+    lines: (ops?.stages ?? []).map(({ stage }) => ({
+      name: stageName(stage),
+      values: history.map((sample) => sample.perMin[stage] ?? null),
+    })),
+    top: 1,
+    isTime: true,
+    format: decimal,
+  };
+}
