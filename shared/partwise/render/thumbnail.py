@@ -16,7 +16,7 @@ from partwise.render.palette import UNLABELLED_COLOUR
 
 BACKGROUND = -1
 """In an image of face ids: no face is seen."""
-PICTURE_SIZE = 256
+PICTURE_SIZE = 384
 """Pixels along each side of the images that are kept."""
 SUPERSAMPLING = 2
 """Pixels of the images along each side of a thumbnail's pixel."""
