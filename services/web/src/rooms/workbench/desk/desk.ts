@@ -1,0 +1,186 @@
+/** Shapes in a person's hands, which of them is worked on, and the next one loaded ahead. */
+import { Problem } from "../../../api/problem";
+import type { ConfirmOutcome } from "../../../drafts/confirming";
+import type { SessionParts } from "../../../drafts/draftSession";
+import { type Lease, leaseApi, type RefusedClaim } from "../../../drafts/leaseApi";
+import type { Renewed } from "../../../drafts/leaseKeeper";
+import { Observable } from "../../../drafts/observable";
+import { HeldShape, type Opening } from "./heldShape";
+
+/** As many as the service lets one person hold. */
+export const MAX_HELD = 4;
+
+export interface DeskState {
+  readonly phase: "opening" | "working" | "empty" | "failed";
+  readonly shapes: readonly HeldShape[];
+  readonly current: HeldShape | null;
+  /** Why there is nothing to show. */
+  readonly why: string | null;
+  /** Shapes that were asked for and are not to be had. */
+  readonly refused: readonly RefusedClaim[];
+}
+
+const AT_FIRST: DeskState = { phase: "opening", shapes: [], current: null, why: null, refused: [] };
+
+export class Desk {
+  readonly state = new Observable<DeskState>(AT_FIRST);
+  private ahead: HeldShape | null = null;
+  private isClosed = false;
+
+  /** opening : asked each time, since parts and preferences change. */
+  constructor(
+    private readonly parts: SessionParts,
+    private readonly collectionId: number,
+    private readonly opening: () => Opening,
+  ) {}
+
+  /** Takes up what is held already; shapes by name, or else the next of the queue. */
+  async start(named: readonly number[]): Promise<void> {
+    const since = performance.now();
+    await this.attempt(async () => {
+      const refused: RefusedClaim[] = [];
+      if (named.length > 0) refused.push(...(await this.claimNamed(named)));
+      for (const leased of await leaseApi.held(this.collectionId)) this.takeHeld(leased, since);
+      this.change({ refused });
+      const wanted = this.state.get().shapes.find((shape) => shape.shapeId === named[0]);
+      const first = wanted ?? this.state.get().shapes[0];
+      if (first !== undefined) this.show(first);
+      else if (refused.length === 0) await this.claimNext();
+      else this.change({ phase: "failed", why: refused.map((each) => each.why).join(" ") });
+      await this.loadAhead();
+    });
+  }
+
+  /** Another shape beside those in hand, or the first. */
+  async takeNext(): Promise<void> {
+    await this.attempt(async () => {
+      await this.claimNext();
+      await this.loadAhead();
+    });
+  }
+
+  show(shape: HeldShape): void {
+    this.change({ phase: "working", current: shape, why: null });
+    if (shape.state.get().step !== "ready") void shape.begin(this.opening());
+  }
+
+  /** Confirms the labels in hand; what comes next is shown at once if that is done. */
+  async confirm(shape: HeldShape): Promise<ConfirmOutcome> {
+    const { open } = shape;
+    if (open === null) return { kind: "unsaved" };
+    const outcome = await open.draft.confirm(open.editor.sha256());
+    if (outcome.kind === "confirmed") await this.leave(shape);
+    return outcome;
+  }
+
+  async skip(shape: HeldShape, reason: string): Promise<void> {
+    await leaseApi.skip(shape.lease.id, reason);
+    await this.leave(shape);
+  }
+
+  /** Gives a shape back to the queue; the draft stays. */
+  async release(shape: HeldShape): Promise<void> {
+    await leaseApi.release(shape.lease.id);
+    await this.leave(shape);
+  }
+
+  /** Takes a shape off the desk that is not this tab's any more, and goes on. */
+  async leave(shape: HeldShape): Promise<void> {
+    const shapes = this.state.get().shapes.filter((each) => each !== shape);
+    const wasCurrent = this.state.get().current === shape;
+    this.change({ shapes });
+    if (wasCurrent) {
+      const [other] = shapes;
+      if (other !== undefined) this.show(other);
+      else await this.takeNext();
+    }
+    await shape.close();
+  }
+
+  dismissRefusals(): void {
+    this.change({ refused: [] });
+  }
+
+  /** Something may work again. */
+  wake(): void {
+    for (const shape of this.all()) {
+      shape.open?.draft.wake();
+      if (shape.open === null) void shape.keeper.renew();
+    }
+  }
+
+  async close(): Promise<void> {
+    this.isClosed = true;
+    await Promise.all(this.all().map((shape) => shape.close()));
+  }
+
+  private all(): HeldShape[] {
+    return [...this.state.get().shapes, ...(this.ahead === null ? [] : [this.ahead])];
+  }
+
+  private async claimNamed(named: readonly number[]): Promise<readonly RefusedClaim[]> {
+    const since = performance.now();
+    try {
+      const { leases, refused } = await leaseApi.named(this.collectionId, named.slice(0, MAX_HELD));
+      for (const leased of leases) this.take(leased, true, since);
+      return refused;
+    } catch (error) {
+      if (!(error instanceof Problem) || error.status !== 409) throw error;
+      return [{ shape_id: named[0] as number, why: error.message }]; // none of them, and why
+    }
+  }
+
+  private takeHeld(leased: Renewed<Lease>, since: number): void {
+    if (this.all().some((shape) => shape.shapeId === leased.lease.shape_id)) return;
+    if (leased.lease.is_prefetched) this.ahead = this.loaded(leased, false, since);
+    else this.take(leased, false, since);
+  }
+
+  private async claimNext(): Promise<void> {
+    const since = performance.now();
+    const ahead = this.ahead;
+    this.ahead = null;
+    if (ahead !== null) {
+      this.change({ shapes: [...this.state.get().shapes, ahead] });
+      this.show(ahead);
+      return;
+    }
+    const leased = await leaseApi.next(this.collectionId, false);
+    if (leased !== null) this.show(this.take(leased, false, since));
+    else if (this.state.get().shapes.length === 0) this.change({ phase: "empty", current: null });
+  }
+
+  private async loadAhead(): Promise<void> {
+    if (this.ahead !== null || this.isClosed || this.state.get().phase !== "working") return;
+    const leased = await leaseApi.next(this.collectionId, true).catch(() => null); // it can be claimed when needed
+    if (leased === null || this.isClosed) return;
+    if (this.all().some((shape) => shape.shapeId === leased.lease.shape_id)) return;
+    this.ahead = this.loaded(leased, false, performance.now());
+  }
+
+  private take(leased: Renewed<Lease>, isNamed: boolean, since: number): HeldShape {
+    const shape = this.loaded(leased, isNamed, since);
+    this.change({ shapes: [...this.state.get().shapes, shape] });
+    return shape;
+  }
+
+  private loaded(leased: Renewed<Lease>, isNamed: boolean, since: number): HeldShape {
+    const shape = new HeldShape(this.parts, leased, isNamed);
+    shape.load(this.opening(), since);
+    return shape;
+  }
+
+  private async attempt(work: () => Promise<void>): Promise<void> {
+    try {
+      await work();
+    } catch (error) {
+      const why = error instanceof Error ? error.message : String(error);
+      if (this.state.get().shapes.length === 0) this.change({ phase: "failed", current: null, why });
+      else this.change({ why });
+    }
+  }
+
+  private change(some: Partial<DeskState>): void {
+    if (!this.isClosed) this.state.set({ ...this.state.get(), ...some });
+  }
+}

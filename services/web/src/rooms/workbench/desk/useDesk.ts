@@ -1,0 +1,72 @@
+/** The desk of a collection, from entering the room to leaving it. */
+import { useEffect, useRef, useState } from "react";
+import { onSessionBegin } from "../../../api/sessionEnd";
+import { systemClock } from "../../../drafts/clock";
+import type { SessionParts } from "../../../drafts/draftSession";
+import { browserTabs } from "../../../drafts/editingRight";
+import { httpTransport } from "../../../drafts/httpTransport";
+import { IndexedDbOutbox } from "../../../drafts/indexedDbOutbox";
+import { leaseApi } from "../../../drafts/leaseApi";
+import { sendLeftovers } from "../../../drafts/leftovers";
+import { Desk } from "./desk";
+import type { Opening } from "./heldShape";
+
+export interface OpenedDesk {
+  readonly desk: Desk;
+  readonly parts: SessionParts;
+}
+
+function newParts(): SessionParts {
+  return {
+    transport: httpTransport,
+    outbox: new IndexedDbOutbox(),
+    clock: systemClock,
+    tabs: browserTabs,
+    openDraft: leaseApi.openDraft,
+  };
+}
+
+/** named : shapes that the address asks for. Null until the room is entered for good. */
+export function useDesk(
+  collectionId: number,
+  personId: number,
+  named: readonly number[],
+  opening: Opening,
+): OpenedDesk | null {
+  const latest = useRef(opening);
+  latest.current = opening;
+  const wanted = named.join(",");
+  const [opened, setOpened] = useState<OpenedDesk | null>(null);
+  useEffect(() => {
+    const parts = newParts();
+    const desk = new Desk(parts, collectionId, () => latest.current);
+    const ids = wanted === "" ? [] : wanted.split(",").map(Number);
+    void desk.start(ids).then(() => sendLeftovers(parts, personId, openKeys(desk)));
+    setOpened({ desk, parts });
+    const stopWaking = wakeWith(desk);
+    return () => {
+      stopWaking();
+      void desk.close();
+    };
+  }, [collectionId, personId, wanted]);
+  return opened;
+}
+
+function openKeys(desk: Desk): Set<string> {
+  const { shapes } = desk.state.get();
+  return new Set(shapes.flatMap((shape) => shape.open?.draft.sender.draft.key ?? []));
+}
+
+/** When something may work again: the network, this tab, this computer, the log in. */
+function wakeWith(desk: Desk): () => void {
+  const wake = () => desk.wake();
+  const wakeIfSeen = () => document.visibilityState === "visible" && desk.wake();
+  window.addEventListener("online", wake);
+  document.addEventListener("visibilitychange", wakeIfSeen);
+  const stop = onSessionBegin(wake);
+  return () => {
+    window.removeEventListener("online", wake);
+    document.removeEventListener("visibilitychange", wakeIfSeen);
+    stop();
+  };
+}

@@ -1,0 +1,46 @@
+import { describe, expect, it, vi } from "vitest";
+import { SHORTCUTS, shortcutOf, type WorkbenchActions } from "./shortcuts";
+
+function pressed(key: string, more: Partial<KeyboardEvent> = {}) {
+  return { key, code: "", ctrlKey: false, metaKey: false, shiftKey: false, altKey: false, ...more };
+}
+
+function ran(event: ReturnType<typeof pressed>, action: keyof WorkbenchActions): unknown[] | undefined {
+  const act = vi.fn();
+  const found = shortcutOf(event);
+  found?.shortcut.run({ [action]: act } as unknown as WorkbenchActions, found.key);
+  return act.mock.calls[0];
+}
+
+describe("keys", () => {
+  it("are each given once", () => {
+    const keys = SHORTCUTS.flatMap((shortcut) => shortcut.keys);
+    expect(new Set(keys).size).toBe(keys.length);
+  });
+
+  it("have a line of their own on the sheet", () => {
+    expect(new Set(SHORTCUTS.map((shortcut) => shortcut.what)).size).toBe(SHORTCUTS.length);
+  });
+
+  it("of digits pick parts, also with Shift on any keyboard", () => {
+    expect(ran(pressed("1", { code: "Digit1" }), "usePart")).toEqual([0]);
+    expect(ran(pressed("0", { code: "Digit0" }), "usePart")).toEqual([9]);
+    expect(ran(pressed("!", { code: "Digit1", shiftKey: true }), "usePart")).toEqual([10]);
+  });
+
+  it("undo and redo with Ctrl or Command", () => {
+    expect(ran(pressed("z", { metaKey: true }), "undo")).toEqual([]);
+    expect(ran(pressed("Z", { ctrlKey: true, shiftKey: true }), "redo")).toEqual([]);
+    expect(ran(pressed("y", { ctrlKey: true }), "redo")).toEqual([]);
+  });
+
+  it("that mean nothing here are left to the browser", () => {
+    expect(shortcutOf(pressed("r", { ctrlKey: true }))).toBeNull();
+    expect(shortcutOf(pressed("b", { altKey: true }))).toBeNull();
+  });
+
+  it("show the sheet by ?, whose keyboard places it differently", () => {
+    expect(ran(pressed("?", { shiftKey: true }), "showKeys")).toEqual([]);
+    expect(ran(pressed("?"), "showKeys")).toEqual([]);
+  });
+});

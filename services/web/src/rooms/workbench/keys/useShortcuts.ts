@@ -1,0 +1,41 @@
+/** Listens to the workbench's keys, but where keys are text or belong to a control. */
+import { useEffect, useRef } from "react";
+import { shortcutOf, type WorkbenchActions } from "./shortcuts";
+
+const TEXT = "input:not([type=range],[type=checkbox],[type=radio]), textarea, select, [contenteditable]";
+/** Where Space and Enter press what has the focus. */
+const PRESSED = "button, a[href], summary, input[type=checkbox], [role^=menuitem]";
+
+export function useShortcuts(actions: WorkbenchActions): void {
+  const latest = useRef(actions);
+  useEffect(() => {
+    latest.current = actions;
+  });
+  useEffect(() => {
+    const onKeyDown = (event: KeyboardEvent) => {
+      if (event.defaultPrevented || isMeantElsewhere(event)) return;
+      const found = shortcutOf(event);
+      if (found === null) return;
+      event.preventDefault();
+      if (!event.repeat || isRepeatable(found.key)) found.shortcut.run(latest.current, found.key);
+    };
+    window.addEventListener("keydown", onKeyDown);
+    return () => window.removeEventListener("keydown", onKeyDown);
+  }, []);
+}
+
+function isMeantElsewhere({ target, key }: KeyboardEvent): boolean {
+  if (!(target instanceof Element)) return false;
+  if (
+    target.closest(TEXT) !== null ||
+    document.querySelector("dialog[open], [popover]:popover-open[role=menu]") !== null
+  ) {
+    return true;
+  }
+  return (key === " " || key === "Enter") && target.closest(PRESSED) !== null;
+}
+
+/** Keys that go on while they are held down. */
+function isRepeatable(key: string): boolean {
+  return ["[", "]", ",", ".", "ctrl+z", "ctrl+y", "ctrl+shift+z"].includes(key);
+}

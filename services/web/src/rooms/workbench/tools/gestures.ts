@@ -1,0 +1,152 @@
+/** What a press, a drag and hovering on the surface mean with the tool in hand. */
+import { cosineOfLimit, Drag } from "../../../geometry/paint";
+import { regionOf } from "../../../geometry/region";
+import { runsOf } from "../../../labels/faceRuns";
+import type { Operation, Paint } from "../../../labels/operations";
+import type { Hit } from "../../../viewer/shapeModel";
+import type { ShapeView, ViewListener } from "../../../viewer/shapeView";
+import type { OpenShape } from "../shape/openShape";
+import type { PatchMap } from "./patchMap";
+import type { ToolSettings, ToolShelf } from "./toolSettings";
+
+export interface GestureContext {
+  readonly shelf: ToolShelf;
+  /** The shape in the view that may be worked on now; null while there is none. */
+  open(): OpenShape | null;
+  patches(): PatchMap | null;
+  /** `#rrggbb` of a part; of 0, the grey of unlabelled faces. */
+  colourOf(part: number): string;
+  /** The person works in this view now. */
+  onEngage(): void;
+}
+
+const SPACING = 0.25;
+
+export class ToolGestures implements ViewListener {
+  private drag: { readonly faces: Drag; readonly stroke: Omit<Paint, "seeds"> } | null = null;
+  private taken: Set<number> | null = null;
+  private region: { readonly faces: Uint32Array; readonly version: number } | null = null;
+
+  constructor(
+    private readonly view: ShapeView,
+    private readonly context: GestureContext,
+  ) {}
+
+  /** Makes the view behave as the tool in hand needs it. */
+  adopt(): void {
+    const { tool, radius } = this.settings;
+    const model = this.view.model;
+    this.view.tool = tool === "turn" ? "navigate" : "stroke";
+    this.view.strokeSpacing = tool === "paint" ? radius * SPACING : 0;
+    this.region = null;
+    if (tool !== "paint") model?.setBrush(null);
+    model?.setPreview(null);
+  }
+
+  hover(hit: Hit | null): void {
+    const open = this.context.open();
+    if (open === null) return;
+    const { tool, radius } = this.settings;
+    if (tool === "paint") open.model.setBrush(hit === null ? null : { point: hit.point, radius });
+    else if (this.taken === null) open.model.setPreview(this.hovered(open, hit), this.colour());
+  }
+
+  strokeStart(hit: Hit): void {
+    this.context.onEngage();
+    const open = this.context.open();
+    if (open === null || !open.canEdit) return;
+    const { tool } = this.settings;
+    if (tool === "paint") this.startPaint(open, hit);
+    else if (tool === "patches") this.takePatches(open, [hit]);
+    else if (tool === "segment")
+      this.done(open, { kind: "segment_wide", seed: hit.face, label: this.settings.part });
+    else if (tool === "pick")
+      this.context.shelf.change({ part: open.labels[hit.face] as number, tool: "paint" });
+  }
+
+  strokeMove(hits: readonly Hit[]): void {
+    const open = this.context.open();
+    if (open === null) return;
+    if (this.drag !== null) for (const { face } of hits) open.model.addPreview(this.drag.faces.click(face));
+    else if (this.taken !== null) this.takePatches(open, hits);
+  }
+
+  strokeEnd(): void {
+    const open = this.context.open();
+    const { drag, taken } = this;
+    this.drag = null;
+    this.taken = null;
+    if (open === null) return;
+    open.model.setPreview(null);
+    if (drag !== null) this.done(open, { ...drag.stroke, seeds: drag.faces.seeds });
+    const faces = taken === null ? [] : [...taken].sort((a, b) => a - b);
+    if (faces.length > 0) this.done(open, { kind: "assign", runs: runsOf(faces), label: this.settings.part });
+  }
+
+  strokeCancel(): void {
+    this.drag = null;
+    this.taken = null;
+    this.context.open()?.model.setPreview(null);
+  }
+
+  /** One press in the middle of the view: for the keyboard. */
+  pressAtCentre(): boolean {
+    const hit = this.view.centreHit();
+    if (hit === null) return false;
+    this.strokeStart(hit);
+    this.strokeEnd();
+    return true;
+  }
+
+  private get settings(): ToolSettings {
+    return this.context.shelf.settings.get();
+  }
+
+  private colour(): string {
+    return this.context.colourOf(this.settings.part);
+  }
+
+  /** Settings are those of the moment: keys may change them while the drag goes on. */
+  private startPaint(open: OpenShape, hit: Hit): void {
+    const { part, radius, hasAngleLimit, angleDegrees, onlyOver } = this.settings;
+    const { labels } = open;
+    const min_cosine = hasAngleLimit ? cosineOfLimit(angleDegrees) : null;
+    const isOpen = onlyOver === null ? undefined : (face: number) => labels[face] === onlyOver;
+    const faces = new Drag(open.model.mesh, { radius, min_cosine }, isOpen);
+    this.drag = { faces, stroke: { kind: "paint", radius, min_cosine, label: part, only_over: onlyOver } };
+    open.model.setPreview(faces.click(hit.face), this.colour());
+  }
+
+  private takePatches(open: OpenShape, hits: readonly Hit[]): void {
+    const patches = this.context.patches();
+    if (patches === null) return;
+    const isFirst = this.taken === null;
+    this.taken ??= new Set();
+    for (const { face } of hits) {
+      if (this.taken.has(face)) continue;
+      const faces = patches.around(face);
+      for (const each of faces) this.taken.add(each);
+      if (!isFirst) open.model.addPreview(faces);
+      else open.model.setPreview(faces, this.colour());
+    }
+  }
+
+  private hovered(open: OpenShape, hit: Hit | null): Uint32Array | null {
+    if (hit === null) return null;
+    const { tool } = this.settings;
+    if (tool === "patches") return this.context.patches()?.around(hit.face) ?? null;
+    if (tool !== "segment") return null;
+    const version = open.version.get();
+    const isKnown = this.region?.version === version && this.region.faces.includes(hit.face);
+    if (!isKnown) {
+      this.region = { version, faces: regionOf(open.model.mesh.graph, open.labels, hit.face) };
+    }
+    return this.region?.faces ?? null;
+  }
+
+  private done(open: OpenShape, operation: Operation): void {
+    this.region = null;
+    open.model.setPreview(null);
+    open.perform(operation);
+  }
+}
