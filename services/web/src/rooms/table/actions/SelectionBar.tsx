@@ -1,5 +1,35 @@
+import { ClipboardCheck, ListRestart, PenTool, Undo2, UserRoundPlus, X } from "lucide-react";
+import { type ReactNode, useState } from "react";
+import { useHasRole } from "../../../app/session/MeContext";
+import { Button, IconButton } from "../../../components";
+import { count, whole } from "../../../components/numbers";
 import type { ShapeRow } from "../rows/shapeRows";
+import { MAX_CHOSEN } from "../selection/selection";
 import type { SelectionState } from "../selection/useSelection";
+import { AcceptDialog } from "./AcceptDialog";
+import styles from "./Actions.module.css";
+import { AssignDialog } from "./AssignDialog";
+import { MAX_OPEN } from "./limits";
+import { PutBackDialog } from "./PutBackDialog";
+import { PutFirstButton } from "./PutFirstButton";
+import { SendBackDialog } from "./SendBackDialog";
+import { type OutcomeTeller, useOutcome } from "./useOutcome";
+
+/** What each dialog of an action gets. rows : the shapes that it is about, as they were when it was opened. */
+export interface ShapeActionProps {
+  readonly collectionId: number;
+  readonly rows: ReadonlyMap<number, ShapeRow>;
+  readonly teller: OutcomeTeller;
+  onClose(): void;
+}
+
+const DIALOGS = {
+  accept: AcceptDialog,
+  assign: AssignDialog,
+  sendBack: SendBackDialog,
+  putBack: PutBackDialog,
+};
+type Action = keyof typeof DIALOGS;
 
 export interface SelectionBarProps {
   readonly collectionId: number;
@@ -7,6 +37,60 @@ export interface SelectionBarProps {
   onOpen(rows: readonly ShapeRow[]): void;
 }
 
-export function SelectionBar(_props: SelectionBarProps) {
-  return null;
+/** How many shapes are selected, and what can be done with them. */
+export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarProps) {
+  const [asked, setAsked] = useState<{ action: Action; rows: ReadonlyMap<number, ShapeRow> } | null>(null);
+  const isReviewer = useHasRole("reviewer");
+  const isOperator = useHasRole("operator");
+  const teller = useOutcome();
+  const { chosen, nBeyond } = selection.selection;
+  const button = (action: Action, icon: ReactNode, words: string) => (
+    <Button size="small" variant="quiet" icon={icon} onClick={() => setAsked({ action, rows: chosen })}>
+      {words}
+    </Button>
+  );
+  const Asked = asked && DIALOGS[asked.action];
+  const canOpen = chosen.size <= MAX_OPEN;
+  return (
+    <>
+      {chosen.size > 0 && (
+        <div className={styles.bar} role="toolbar" aria-label="Selected shapes">
+          <p className={styles.selected} role="status">
+            {whole(chosen.size)} selected
+            {nBeyond > 0 && (
+              <span className={styles.beyond}>
+                , the first of {whole(chosen.size + nBeyond)}; up to {whole(MAX_CHOSEN)} at a time
+              </span>
+            )}
+          </p>
+          <Button
+            size="small"
+            variant="primary"
+            icon={<PenTool />}
+            disabled={!canOpen}
+            title={canOpen ? undefined : `The workbench takes up to ${count(MAX_OPEN, "shape")}`}
+            onClick={() => onOpen([...chosen.values()])}
+          >
+            Open
+          </Button>
+          {isReviewer && button("accept", <ClipboardCheck />, "Accept…")}
+          {isReviewer && button("sendBack", <Undo2 />, "Send back…")}
+          {isReviewer && <PutFirstButton collectionId={collectionId} shapeIds={[...chosen.keys()]} />}
+          {isOperator && button("assign", <UserRoundPlus />, "Assign…")}
+          {isOperator && button("putBack", <ListRestart />, "Put back in queue…")}
+          <IconButton
+            size="small"
+            label="Select none"
+            shortcut="Escape"
+            icon={<X />}
+            onClick={selection.none}
+          />
+        </div>
+      )}
+      {Asked && (
+        <Asked collectionId={collectionId} rows={asked.rows} teller={teller} onClose={() => setAsked(null)} />
+      )}
+      {teller.dialog}
+    </>
+  );
 }

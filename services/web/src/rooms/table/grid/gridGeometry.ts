@@ -6,6 +6,9 @@ export const GAP_PX = 10;
 const LEAST_TILE_PX: Readonly<Record<TileSize, number>> = { s: 96, m: 144, l: 216 };
 const CAPTION_PX: Readonly<Record<TileSize, number>> = { s: 24, m: 46, l: 46 };
 
+/** Left free below the last row, where the bar of what is selected floats. */
+const BAR_PX = 64;
+
 /** Browsers cut elements off beyond some 17 to 33 million pixels; past this, the scrollbar runs faster than the page. */
 const LONGEST_PX = 12_000_000;
 
@@ -24,7 +27,7 @@ export function gridGeometry(widthPx: number, size: TileSize, nShapes: number): 
   const tilePx = Math.floor((inner - (columns - 1) * GAP_PX) / columns);
   const rowPx = tilePx + CAPTION_PX[size] + GAP_PX;
   const nRows = Math.ceil(nShapes / columns);
-  return { columns, tilePx, rowPx, nRows, contentPx: nRows * rowPx + GAP_PX };
+  return { columns, tilePx, rowPx, nRows, contentPx: nRows * rowPx + GAP_PX + BAR_PX };
 }
 
 /** The element's height, and how many pixels of the grid one of the scrollbar stands for. */

@@ -4,10 +4,12 @@ import { initials, scoreText, tileWords } from "./stateWords";
 
 describe("scoreText", () => {
   it.each([
-    [0, "0.00"],
+    [0, "0.000"],
     [0.31249, "0.312"],
-    [1.5, "1.50"],
-    [0.00004, "4.0e-5"],
+    [1.5, "1.500"],
+    [0.0836, "0.084"],
+    [1234.5, "1235"],
+    [0.00004, "4e-5"],
   ])("%f as %s", (score, text) => expect(scoreText(score)).toBe(text));
 });
 

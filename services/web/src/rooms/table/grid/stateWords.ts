@@ -32,9 +32,11 @@ export function stageWords(stage: string): string {
   return known[stage] ?? stage.replaceAll("_", " ");
 }
 
-/** Three digits that matter, as scores are compared. */
+/** As many digits as it takes to compare scores at a glance. */
 export function scoreText(score: number): string {
-  return score !== 0 && Math.abs(score) < 0.001 ? score.toExponential(1) : score.toPrecision(3);
+  const size = Math.abs(score);
+  if (size !== 0 && size < 0.001) return score.toExponential(0);
+  return score.toFixed(size >= 100 ? 0 : 3);
 }
 
 /** "AN" of "ann novak"; at most two letters. */
