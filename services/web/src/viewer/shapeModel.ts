@@ -120,7 +120,7 @@ export class ShapeModel {
 
   /** Whether the edges of faces are drawn. */
   setWireframe(isOn: boolean): void {
-    this.#uniforms.uWireframe.value = isOn ? 1 : 0;
+    this.#uniforms.uWireframe.value = isOn;
     this.#draw();
   }
 
@@ -165,7 +165,7 @@ function newUniforms(faces: DataTexture) {
     uUp: { value: new Vector3(0, 1, 0) },
     uPixel: { value: 1 },
     uHighlight: { value: new Color() },
-    uWireframe: { value: 0 },
+    uWireframe: { value: false },
     uBrushPoint: { value: new Vector3() },
     uBrushRadius: { value: 0 },
   };

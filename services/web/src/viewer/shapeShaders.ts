@@ -6,89 +6,85 @@
 /** Texels to a row of the texture of face states. */
 export const STATES_WIDTH = 512;
 
-/** Corner k of face f is vertex 3f + k: that is all a vertex needs to know to find its face. */
+/**
+ * Corner k of face f is vertex 3f + k: that is all a vertex needs to know to find its face. What is the same all over a
+ * face is worked out here, because without a graphics card pixels are dear. Squares and roots stand for the sRGB curve.
+ */
 export const VERTEX_SHADER = /* glsl */ `
 uniform sampler2D uFaces;
-flat out vec4 vState;
-out vec3 vBarycentric;
+uniform vec3 uHighlight;
+flat out vec3 vColour; // linear
+flat out uint vBits;
+out vec2 vBarycentric; // of corners 0 and 1
 out vec3 vPoint;
 out vec3 vNormal;
-out vec3 vEye;
 
 void main() {
   int face = gl_VertexID / 3;
   int corner = gl_VertexID - 3 * face;
-  vState = texelFetch(uFaces, ivec2(face % ${STATES_WIDTH}, face / ${STATES_WIDTH}), 0);
-  vBarycentric = vec3(corner == 0, corner == 1, corner == 2);
+  vec4 state = texelFetch(uFaces, ivec2(face % ${STATES_WIDTH}, face / ${STATES_WIDTH}), 0);
+  vBits = uint(state.a * 255.0 + 0.5);
+  vColour = state.rgb * state.rgb;
+  if ((vBits & 64u) != 0u) vColour = mix(vColour, uHighlight * uHighlight, 0.75) * 1.1 + 0.015;
+  vBarycentric = vec2(corner == 0, corner == 1);
   vPoint = position;
-  vec4 eye = modelViewMatrix * vec4(position, 1.0);
-  vEye = eye.xyz;
   vNormal = normalMatrix * normal.xyz;
-  gl_Position = projectionMatrix * eye;
+  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
 }
 `;
 
 export const FRAGMENT_SHADER = /* glsl */ `
 uniform vec3 uUp; // of the shape, as the camera sees it
 uniform float uPixel; // pixels of the screen to one of CSS
-uniform vec3 uHighlight;
-uniform float uWireframe;
+uniform bool uWireframe;
 uniform vec3 uBrushPoint;
 uniform float uBrushRadius; // 0: no brush
-flat in vec4 vState;
-in vec3 vBarycentric;
+flat in vec3 vColour;
+flat in uint vBits;
+in vec2 vBarycentric;
 in vec3 vPoint;
 in vec3 vNormal;
-in vec3 vEye;
 out vec4 colour;
 
 const vec3 KEY = vec3(-0.4357, 0.7261, 0.5325);
-
-vec3 linear(vec3 srgb) { return pow(srgb, vec3(2.2)); }
+const vec3 FILL = vec3(0.62, -0.1, 0.78);
 
 // How much of a pixel a line of this width covers, whose middle is so many pixels away.
 float line(float away, float width) { return clamp(0.5 * width + 0.5 - away, 0.0, 1.0); }
 
-float anyOf(vec3 lines, uint bits) {
-  vec3 isOn = vec3(float(bits & 1u), float((bits >> 1) & 1u), float((bits >> 2) & 1u));
-  vec3 covered = lines * isOn;
-  return max(covered.x, max(covered.y, covered.z));
+float nearest(vec3 away, uint bits) {
+  return min((bits & 1u) != 0u ? away.x : 1e3, min((bits & 2u) != 0u ? away.y : 1e3, (bits & 4u) != 0u ? away.z : 1e3));
 }
 
+// The lens is long, so the camera is taken to be in front of every point alike.
 float light(vec3 normal) {
   float direct = max(dot(normal, KEY), 0.0);
-  float sky = mix(0.26, 0.52, 0.5 + 0.5 * dot(normal, uUp));
-  float fill = 0.16 * max(dot(normal, vec3(0.62, -0.1, 0.78)), 0.0);
-  float away = 1.0 - clamp(dot(normal, normalize(-vEye)), 0.0, 1.0);
+  float sky = 0.39 + 0.13 * dot(normal, uUp);
+  float fill = 0.16 * max(dot(normal, FILL), 0.0);
+  float away = 1.0 - max(normal.z, 0.0);
   return (0.66 * direct + sky + fill) * (1.0 - 0.4 * away * away * away);
 }
 
 void main() {
-  vec3 normal = normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0);
-  uint bits = uint(vState.a * 255.0 + 0.5);
-  vec3 base = linear(vState.rgb);
-  bool isHighlighted = (bits & 64u) != 0u;
-  if (isHighlighted) base = mix(base, linear(uHighlight), 0.6) * 1.12 + 0.015;
+  vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
+  vec3 shaded = vColour * light(normal);
 
-  vec3 shaded = base * light(normal);
-
-  // Edge k is opposite to corner k + 2; its line lies half in each of its two faces.
-  vec3 slope = vec3(length(vec2(dFdx(vBarycentric.x), dFdy(vBarycentric.x))),
-                    length(vec2(dFdx(vBarycentric.y), dFdy(vBarycentric.y))),
-                    length(vec2(dFdx(vBarycentric.z), dFdy(vBarycentric.z))));
-  vec3 away = (vBarycentric / max(slope, 1e-6)).zxy / uPixel;
-  vec3 fine = vec3(line(away.x, 1.0), line(away.y, 1.0), line(away.z, 1.0));
-  vec3 bold = vec3(line(away.x, 1.8), line(away.y, 1.8), line(away.z, 1.8));
-  shaded *= 1.0 - 0.22 * uWireframe * max(fine.x, max(fine.y, fine.z));
-  shaded *= 1.0 - 0.42 * anyOf(fine, (bits >> 3) & 7u);
-  shaded *= 1.0 - 0.72 * anyOf(bold, bits & 7u);
-
+  if (uWireframe || (vBits & 63u) != 0u) {
+    // Edge k is opposite to corner k + 2; its line lies half in each of its two faces.
+    vec3 inside = vec3(1.0 - vBarycentric.x - vBarycentric.y, vBarycentric);
+    vec3 along = dFdx(inside);
+    vec3 down = dFdy(inside);
+    vec3 away = inside * inversesqrt(max(along * along + down * down, 1e-12)) / uPixel;
+    if (uWireframe) shaded *= 1.0 - 0.22 * line(nearest(away, 7u), 1.0);
+    shaded *= 1.0 - 0.42 * line(nearest(away, vBits >> 3), 1.0);
+    shaded *= 1.0 - 0.72 * line(nearest(away, vBits), 1.8);
+  }
   if (uBrushRadius > 0.0) {
     float distance = length(vPoint - uBrushPoint) - uBrushRadius;
     float pixels = abs(distance) / max(length(vec2(dFdx(distance), dFdy(distance))), 1e-9) / uPixel;
     shaded = mix(shaded, vec3(0.0), 0.55 * line(pixels, 4.0));
     shaded = mix(shaded, vec3(1.0), line(pixels, 1.6));
   }
-  colour = vec4(pow(clamp(shaded, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+  colour = vec4(sqrt(shaded), 1.0);
 }
 `;

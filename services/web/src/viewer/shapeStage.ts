@@ -2,35 +2,31 @@
  * One canvas and one graphics context for all viewports: browsers allow few contexts, and shapes shown twice are held
  * once. Draws only when something changed.
  */
-import { WebGLRenderer } from "three";
+import { type Graphics, newGraphics } from "./graphics";
 import { ShapeView, type ViewOptions } from "./shapeView";
 
 const MOST_PIXELS_TO_ONE = 2;
-
-/** This browser shows no WebGL 2. The message is for people. */
-export class NoWebGlError extends Error {
-  override readonly name = "NoWebGlError";
-}
+/** Without a graphics card: pixels to one while things move, and a finer picture once they have been still so long. */
+const STILL_PIXELS_TO_ONE = 2;
+const STILL_AFTER_MS = 400;
 
 export class ShapeStage {
   /** Called when the browser takes the graphics context away, and when it is back and all is drawn anew. */
   onContext: ((state: "lost" | "restored") => void) | null = null;
   readonly #canvas: HTMLCanvasElement;
-  readonly #renderer: WebGLRenderer;
+  readonly #graphics: Graphics;
   readonly #views = new Set<ShapeView>();
   readonly #resized: ResizeObserver;
   readonly #invalidate = () => this.invalidate();
   #links: readonly ShapeView[] = [];
   #frame = 0;
+  #stillness: ReturnType<typeof setTimeout> | undefined;
   #inputAt: number | null = null;
 
   /** canvas : behind the elements of the views, at least as large as all of them. Throws NoWebGlError. */
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
-    this.#renderer = newRenderer(canvas);
-    this.#renderer.autoClear = false;
-    this.#renderer.setClearAlpha(0);
-    this.#renderer.setScissorTest(true);
+    this.#graphics = newGraphics(canvas);
     this.#resized = new ResizeObserver(() => this.#draw()); // at once: a resized canvas is blank
     this.#resized.observe(canvas);
     canvas.addEventListener("webglcontextlost", this.#contextLost);
@@ -67,13 +63,14 @@ export class ShapeStage {
   /** Frees the graphics context. Models are disposed by those who made them. */
   dispose(): void {
     cancelAnimationFrame(this.#frame);
+    clearTimeout(this.#stillness);
     this.#frame = -1;
     for (const view of [...this.#views]) view.remove();
     this.#resized.disconnect();
     this.#canvas.removeEventListener("webglcontextlost", this.#contextLost);
     this.#canvas.removeEventListener("webglcontextrestored", this.#contextRestored);
-    this.#renderer.dispose();
-    this.#renderer.forceContextLoss();
+    this.#graphics.renderer.dispose();
+    this.#graphics.renderer.forceContextLoss();
   }
 
   readonly #contextLost = () => this.onContext?.("lost");
@@ -87,8 +84,11 @@ export class ShapeStage {
     if (this.#frame < 0) return;
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
-    const box = this.#fitCanvas();
-    for (const view of this.#views) view.draw(this.#renderer, box);
+    clearTimeout(this.#stillness);
+    if (this.#graphics.isSoftware) {
+      this.#drawAt(1);
+      this.#stillness = setTimeout(() => this.#drawAt(STILL_PIXELS_TO_ONE), STILL_AFTER_MS);
+    } else this.#drawAt(Math.min(window.devicePixelRatio, MOST_PIXELS_TO_ONE));
     if (this.#inputAt !== null) {
       performance.measure("partwise:brush", { start: this.#inputAt, end: performance.now() });
       performance.clearMeasures("partwise:brush"); // who observes has it; the browser's list would grow for ever
@@ -96,20 +96,20 @@ export class ShapeStage {
     this.#inputAt = null;
   }
 
-  #fitCanvas(): DOMRect {
+  #drawAt(pixelsToOne: number): void {
+    const { renderer } = this.#graphics;
     const box = this.#canvas.getBoundingClientRect();
-    const ratio = Math.min(window.devicePixelRatio, MOST_PIXELS_TO_ONE);
     const isFit =
-      this.#canvas.width === Math.floor(box.width * ratio) &&
-      this.#canvas.height === Math.floor(box.height * ratio);
-    if (!isFit || this.#renderer.getPixelRatio() !== ratio) {
-      this.#renderer.setPixelRatio(ratio);
-      this.#renderer.setSize(box.width, box.height, false);
+      this.#canvas.width === Math.floor(box.width * pixelsToOne) &&
+      this.#canvas.height === Math.floor(box.height * pixelsToOne);
+    if (!isFit) {
+      renderer.setPixelRatio(pixelsToOne);
+      renderer.setSize(box.width, box.height, false);
     }
-    this.#renderer.setViewport(0, 0, box.width, box.height);
-    this.#renderer.setScissor(0, 0, box.width, box.height);
-    this.#renderer.clear();
-    return box;
+    renderer.setViewport(0, 0, box.width, box.height);
+    renderer.setScissor(0, 0, box.width, box.height);
+    renderer.clear();
+    for (const view of this.#views) view.draw(renderer, box);
   }
 
   #follow(leader: ShapeView): void {
@@ -122,15 +122,5 @@ export class ShapeStage {
     this.#links = this.#links.filter((linked) => linked !== view);
     this.#resized.unobserve(view.element);
     this.invalidate();
-  }
-}
-
-function newRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
-  try {
-    return new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
-  } catch {
-    throw new NoWebGlError(
-      "This browser does not show 3D. Turn hardware acceleration on, or use another browser.",
-    );
   }
 }
