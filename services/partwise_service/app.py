@@ -1,5 +1,6 @@
 """`create_app`: the service as an ASGI application. Nothing exists until it is called."""
 
+import re
 import time
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import ExitStack, asynccontextmanager
@@ -20,6 +21,7 @@ from partwise_service.routes import (
     collections,
     drafts,
     events,
+    exports,
     failures,
     figures,
     jobs,
@@ -31,6 +33,7 @@ from partwise_service.routes import (
     session,
     shapes,
     tools,
+    uploads,
 )
 from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
@@ -54,11 +57,13 @@ ROUTERS: Sequence[APIRouter] = (
     drafts.router,
     tools.router,
     jobs.router,
+    exports.router,
+    uploads.router,
     failures.router,
     events.router,
 )
 """Every resource of the API, in the order of the document. A route file is served once its router is in here."""
-UPLOAD_PATHS: Sequence[str] = (f"{API_V1}/uploads",)
+UPLOAD_PATH = re.compile(rf"{API_V1}/collections/[0-9]+/uploads")
 """Paths whose requests may be as large as `max_upload_bytes`."""
 _METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
 _REQUEST_HEADERS = ("Authorization", "Content-Type", "If-None-Match", "Last-Event-ID")
@@ -112,7 +117,7 @@ def _operation_id(route: APIRoute) -> str:
 
 def _add_middleware(app: FastAPI, settings: ServiceSettings) -> None:
     """From the innermost to the outermost."""
-    app.add_middleware(BodyLimitMiddleware, settings.max_body_bytes, settings.max_upload_bytes, UPLOAD_PATHS)
+    app.add_middleware(BodyLimitMiddleware, settings.max_body_bytes, settings.max_upload_bytes, UPLOAD_PATH)
     app.add_middleware(FaultMiddleware)
     if settings.cors_origins:
         app.add_middleware(

@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from partwise.errors import ConfigError
+from partwise.workspace.ingest_prefixes import parse_prefixes
 
 PREFIX = "PARTWISE_SERVICE_"
 """Of environment variables: `PARTWISE_SERVICE_PORT` sets `port`. Lists are separated by commas."""
@@ -32,6 +33,8 @@ class ServiceSettings(BaseModel):
     lease_s : seconds for which a claim or a heartbeat holds a shape.
     tool_processes : in which tools run. max_queued_tools : calls that may wait for one; more are told to come back.
     tool_shapes : prepared shapes that each of them keeps. tool_timeout_s : after which a call is given up.
+    max_uploads : that may wait in a collection. upload_ttl_h : hours after which one is gone.
+    ingest_prefixes : folders by name, below which jobs may ingest; the workers read the same variable.
     page_folder : the built files of the annotation page.
     event_stream_s : seconds after which a stream of events ends, for the client to go on with another.
     """
@@ -57,12 +60,20 @@ class ServiceSettings(BaseModel):
     tool_shapes: int = Field(16, ge=1, le=10_000)
     tool_timeout_s: float = Field(60.0, gt=0)
     event_stream_s: float = Field(3600.0, ge=0)
+    max_uploads: int = Field(8, ge=1, le=1_000)
+    upload_ttl_h: float = Field(24.0, gt=0, le=24 * 31)
+    ingest_prefixes: dict[str, Path] = Field(default_factory=dict)
     page_folder: Path = BUILT_PAGE
 
     @field_validator("cors_origins", "trusted_proxies", mode="before")
     @classmethod
     def _split(cls, value: Any) -> Any:
         return [part.strip() for part in value.split(",") if part.strip()] if isinstance(value, str) else value
+
+    @field_validator("ingest_prefixes", mode="before")
+    @classmethod
+    def _parse_prefixes(cls, value: Any) -> Any:
+        return dict(parse_prefixes(value)) if isinstance(value, str) else value
 
     @field_validator("public_url")
     @classmethod

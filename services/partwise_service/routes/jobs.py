@@ -2,12 +2,13 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import APIRouter, Body, Depends, Query
 
 from partwise.errors import NotFoundError
 from partwise.store.records import Job, JobKind, JobState, Role
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, require_role
 from partwise_service.schemas.base import MAX_ROW_ID, RowId
+from partwise_service.schemas.exports import NewExport
 from partwise_service.schemas.jobs import JobOut, JobsPage, NewJob
 from partwise_service.security.identity import Identity
 
@@ -51,10 +52,15 @@ def list_jobs(
 
 
 @router.post("/collections/{collection_id}/jobs", status_code=201)
-def enqueue_job(caller: Caller, collection: ScopedCollection, catalog: CatalogDep, new: NewJob) -> JobOut:
+def enqueue_job(
+    caller: Caller,
+    collection: ScopedCollection,
+    catalog: CatalogDep,
+    new: Annotated[NewJob | NewExport, Body(discriminator="kind")],
+) -> JobOut:
     """Ask for work: `train` for reviewers, all kinds for operators. One that waits already is returned as it is."""
     require_job_role(caller, new.kind)
-    job = catalog.enqueue_job(collection.id, new.kind)
+    job = catalog.enqueue_job(collection.id, new.kind, new.parameters.model_dump(mode="json"))
     catalog.append_audit(caller.name, "enqueue", f"job {job.id}", {"kind": job.kind.value})
     return JobOut.of(job)
 

@@ -1,6 +1,6 @@
 """ASGI middleware around every request: headers that browsers obey, faults as problem documents, limits on bodies."""
 
-from collections.abc import Sequence
+import re
 
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
@@ -82,20 +82,20 @@ class BodyLimitMiddleware:
 
     Parameters
     ----------
-    max_bytes : of most requests. max_upload_bytes : of those whose path begins with one of `upload_paths`.
+    max_bytes : of most requests. max_upload_bytes : of those whose whole path is like `upload_path`.
     """
 
-    def __init__(self, app: ASGIApp, max_bytes: int, max_upload_bytes: int, upload_paths: Sequence[str]) -> None:
+    def __init__(self, app: ASGIApp, max_bytes: int, max_upload_bytes: int, upload_path: re.Pattern[str]) -> None:
         self._app = app
         self._max_bytes = max_bytes
         self._max_upload_bytes = max_upload_bytes
-        self._upload_paths = tuple(upload_paths)
+        self._upload_path = upload_path
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        is_upload = bool(self._upload_paths) and scope["path"].startswith(self._upload_paths)
+        is_upload = self._upload_path.fullmatch(scope["path"])
         limit = self._max_upload_bytes if is_upload else self._max_bytes
         announced = dict(scope["headers"]).get(b"content-length", b"0")
         if not announced.isdigit() or int(announced) > limit:

@@ -4,6 +4,7 @@ import asyncio
 
 import pytest
 
+from partwise_service.app import UPLOAD_PATH
 from partwise_service.security.middleware import BodyLimitMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
@@ -57,13 +58,21 @@ def test_reading_stops_at_the_limit() -> None:
     async def send(message) -> None:
         raise AssertionError(message)
 
-    limited = BodyLimitMiddleware(app, LIMIT, LIMIT, ())
+    limited = BodyLimitMiddleware(app, LIMIT, LIMIT, UPLOAD_PATH)
     with pytest.raises(Exception, match="at most 2,000 bytes"):
         asyncio.run(limited({"type": "http", "path": "/", "headers": []}, receive, send))
     assert n_read == LIMIT // 1_000 + 1
 
 
-@pytest.mark.parametrize(("path", "is_refused"), [("/api/v1/uploads/1", False), ("/api/v1/jobs", True)])
+@pytest.mark.parametrize(
+    ("path", "is_refused"),
+    [
+        ("/api/v1/collections/1/uploads", False),
+        ("/api/v1/collections/1/uploads/x", True),
+        ("/api/v1/collections/1/jobs", True),
+        ("/api/v1/jobs", True),
+    ],
+)
 def test_uploads_may_be_larger(path: str, is_refused: bool) -> None:
     statuses = []
 
@@ -73,7 +82,7 @@ def test_uploads_may_be_larger(path: str, is_refused: bool) -> None:
     async def send(message) -> None:
         statuses.append(message.get("status"))
 
-    limited = BodyLimitMiddleware(app, 10, 1_000, ("/api/v1/uploads",))
+    limited = BodyLimitMiddleware(app, 10, 1_000, UPLOAD_PATH)
     scope = {"type": "http", "path": path, "headers": [(b"content-length", b"500")]}
     asyncio.run(limited(scope, None, send))
     assert statuses[0] == (413 if is_refused else 200)
