@@ -44,7 +44,8 @@ def show_embedding(
     start = int(np.searchsorted(drawn.shape_ids, after, side="right"))
     ids = drawn.shape_ids[start : start + limit].tolist()
     points = drawn.points[start : start + limit]
-    clusters = workspace.catalog.clusters(ids)
+    clusters, states = workspace.catalog.clusters(ids), workspace.catalog.shape_states(ids)
+    first_ids = {first.shape_id for first in workspace.catalog.first_shapes(collection.id)}
     return EmbeddingPage(
         embedding=drawn.key.rpartition("/")[2].partition(".")[0],
         n_shapes=len(drawn.shape_ids),
@@ -52,6 +53,8 @@ def show_embedding(
         x=points[:, 0].tolist(),
         y=points[:, 1].tolist(),
         clusters=[clusters.get(shape_id) for shape_id in ids],
+        states=[states[shape_id] for shape_id in ids],
+        first_shape_ids=[shape_id for shape_id in ids if shape_id in first_ids],
         next=str(ids[-1]) if start + limit < len(drawn.shape_ids) else None,
     )
 

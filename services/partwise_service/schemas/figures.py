@@ -34,6 +34,7 @@ class EmbeddingPage(Answer):
     """A page of the map in columns: shapes by id, where they lie along the two directions of most variance, clusters.
 
     embedding : changes when the map is made anew: then begin again. cluster : null where none is on record.
+    first_shape_ids : those of the page that were chosen to be labelled first.
     """
 
     embedding: str
@@ -42,6 +43,8 @@ class EmbeddingPage(Answer):
     x: list[float]
     y: list[float]
     clusters: list[int | None]
+    states: list[ShapeState]
+    first_shape_ids: list[int]
     next: str | None
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from safetensors.numpy import save
 
-from partwise.store.records import NewFailure
+from partwise.store.records import FirstShape, NewFailure
 
 
 @pytest.fixture
@@ -36,6 +36,14 @@ def test_the_map_is_in_two_dimensions_by_shape(annotator, workspace, mugs, embed
     assert (shown["x"], shown["y"], shown["clusters"]) == ([1, 2, 3], [10, 20, 30], [None, 4, None])
     assert shown["shape_ids"] == [mugs.ids[key] for key in ("a.off", "b.off", "sub/c.off")]
     assert (shown["n_shapes"], shown["next"]) == (3, None)
+
+
+def test_the_map_says_where_shapes_stand_and_which_come_first(annotator, workspace, mugs, embedded) -> None:
+    workspace.catalog.replace_first_shapes(mugs.collection_id, [FirstShape(mugs.ids["b.off"], 0, 4)])
+    shown = annotator.get(_path(mugs, "embedding")).json()
+    states = workspace.catalog.shape_states(shown["shape_ids"])
+    assert shown["states"] == [states[shape_id].value for shape_id in shown["shape_ids"]]
+    assert shown["first_shape_ids"] == [mugs.ids["b.off"]]
 
 
 def test_pages_of_the_map(annotator, mugs, embedded) -> None:
