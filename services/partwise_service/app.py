@@ -17,7 +17,9 @@ from partwise_service.openapi import install_openapi
 from partwise_service.page import install_page
 from partwise_service.problems import install_problems
 from partwise_service.routes import (
+    accepts,
     arrays,
+    checks,
     collections,
     drafts,
     events,
@@ -50,6 +52,8 @@ ROUTERS: Sequence[APIRouter] = (
     shapes.router,
     arrays.router,
     reviews.router,
+    accepts.router,
+    checks.router,
     figures.router,
     people.router,
     queue.router,

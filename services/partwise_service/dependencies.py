@@ -4,7 +4,7 @@ A handler names the least role that may call it (`Annotator` < `Reviewer` < `Ope
 shapes outside the caller's scope do not exist for them: 404, the same as for ids that were never given.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated
 
 from fastapi import Depends, Request, Security
@@ -146,6 +146,20 @@ def visible_shape(served: Catalog, caller: Identity, shape_id: int) -> Shape:
     if found is None or not caller.may_see(found.collection_id):
         raise NotFoundError(f"there is no shape {shape_id}; see /collections/…/shapes for those you work on")
     return found
+
+
+def shapes_of(served: Catalog, collection: Collection, shape_ids: Sequence[int]) -> list[Shape]:
+    """The shapes of these ids, each once, all of the collection.
+
+    Raises
+    ------
+    NotFoundError : one is not there.
+    """
+    found = served.shapes_by_id(shape_ids)
+    for shape_id in shape_ids:
+        if shape_id not in found or found[shape_id].collection_id != collection.id:
+            raise NotFoundError(f"there is no shape {shape_id} in collection {collection.id}")
+    return [found[shape_id] for shape_id in dict.fromkeys(shape_ids)]
 
 
 def scoped_collection(collection_id: RowId, caller: Caller, served: CatalogDep) -> Collection:

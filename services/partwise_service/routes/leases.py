@@ -4,16 +4,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from partwise.errors import ConflictError, NotFoundError
-from partwise.store.reviews import NewReview, ReviewReason
+from partwise.errors import ConflictError
 from partwise.workspace.confirming import confirm
 from partwise_service.dependencies import (
     Annotator,
     CatalogDep,
     Operator,
-    Reviewer,
     ScopedCollection,
-    ScopedShape,
     ServiceDep,
     WorkspaceDep,
 )
@@ -21,7 +18,6 @@ from partwise_service.held_leases import leases_out, visible_lease
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.drafts import Confirm, Confirmed
 from partwise_service.schemas.queue import LeaseOut, LeasesOut, Renewal, Skip
-from partwise_service.schemas.shapes import Rejection, ReviewOut
 
 MAX_PAGE = 500
 router = APIRouter(tags=["leases"])
@@ -91,17 +87,3 @@ def clear_lease(caller: Operator, catalog: CatalogDep, lease_id: RowId) -> Lease
     """Take a shape from whoever holds it, which goes on the audit trail; their draft stays."""
     visible_lease(catalog, caller, lease_id)
     return leases_out(catalog, [catalog.clear_lease(lease_id, caller.person_id)], caller)[0]
-
-
-@router.post("/shapes/{shape_id}/reject")
-def reject_labels(caller: Reviewer, shape: ScopedShape, catalog: CatalogDep, rejection: Rejection) -> ReviewOut:
-    """Send a shape's newest labels back for rework, whether or not a review of them is open."""
-    head = catalog.head_revision(shape.id)
-    if head is None:
-        raise NotFoundError(f"shape {shape.id} has no labels to send back")
-    opened = [review for review in catalog.reviews(shape.id) if review.resolved_at is None]
-    if any(review.reason is ReviewReason.REWORK for review in opened):
-        raise ConflictError(f"labels are sent back once but those of shape {shape.id} were already; await better ones")
-    review = opened[0] if opened else catalog.add_review(head.id, NewReview(ReviewReason.CHECK))
-    rejected = catalog.reject_review(review.id, caller.person_id, rejection.note, for_author=rejection.for_author)
-    return ReviewOut.of(rejected)

@@ -12,6 +12,7 @@ from partwise_service.dependencies import (
     ScopedCollection,
     ScopedShape,
     ServiceDep,
+    shapes_of,
     visible_collection,
     visible_shape,
 )
@@ -67,10 +68,7 @@ def assign_shapes(
     caller: Operator, collection: ScopedCollection, catalog: CatalogDep, assignment: Assignment
 ) -> Assigned:
     """Keep shapes that wait for one person, or let anybody have them again."""
-    shapes = catalog.shapes_by_id(assignment.shape_ids)
-    for shape_id in assignment.shape_ids:
-        if shape_id not in shapes or shapes[shape_id].collection_id != collection.id:
-            raise NotFoundError(f"there is no shape {shape_id} in collection {collection.id}")
+    shapes_of(catalog, collection, assignment.shape_ids)
     return Assigned(n_places=catalog.assign_shapes(assignment.shape_ids, assignment.person_id, caller.person_id))
 
 

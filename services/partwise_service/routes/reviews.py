@@ -4,9 +4,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from partwise.errors import NotFoundError
+from partwise.errors import ConflictError, NotFoundError
 from partwise.store.catalog import LabelCatalog
-from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape
+from partwise.store.reviews import NewReview, Review, ReviewReason
+from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape, shapes_of
+from partwise_service.schemas.accepts import BulkRejection, RefusedOut, Rejected
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.shapes import Rejection, ReviewOut, ReviewsOut
 
@@ -21,9 +23,10 @@ def list_open_reviews(
     catalog: CatalogDep,
     after: Annotated[int, Query(ge=0, le=MAX_ROW_ID)] = 0,
     limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 100,
+    reason: ReviewReason | None = None,
 ) -> Page[ReviewOut]:
-    """Labels of the collection that wait for someone to look at them, oldest first."""
-    found = catalog.open_reviews(collection.id, after=after, limit=limit)
+    """Labels of the collection that wait for someone to look at them, of one reason if given, oldest first."""
+    found = catalog.open_reviews(collection.id, after=after, limit=limit, reason=reason)
     next_after = str(found[-1].id) if len(found) == limit else None
     return Page(items=[ReviewOut.of(review) for review in found], next=next_after)
 
@@ -49,6 +52,38 @@ def reject_review(
     _refuse_foreign(catalog, shape.id, review_id)
     rejected = catalog.reject_review(review_id, caller.person_id, rejection.note, for_author=rejection.for_author)
     return ReviewOut.of(rejected)
+
+
+@router.post("/shapes/{shape_id}/reject")
+def reject_labels(caller: Reviewer, shape: ScopedShape, catalog: CatalogDep, rejection: Rejection) -> ReviewOut:
+    """Send a shape's newest labels back for rework, whether or not a review of them is open."""
+    return ReviewOut.of(_sent_back(catalog, shape.id, caller.person_id, rejection.note, rejection.for_author))
+
+
+@router.post("/collections/{collection_id}/reject")
+def reject_many(
+    caller: Reviewer, collection: ScopedCollection, catalog: CatalogDep, rejection: BulkRejection
+) -> Rejected:
+    """Send the newest labels of many shapes back for rework, each by itself."""
+    rejected, refused = [], []
+    for shape in shapes_of(catalog, collection, rejection.shape_ids):
+        try:
+            _sent_back(catalog, shape.id, caller.person_id, rejection.note, rejection.for_author)
+            rejected.append(shape.id)
+        except (ConflictError, NotFoundError) as error:
+            refused.append(RefusedOut(shape_id=shape.id, why=str(error)))
+    return Rejected(rejected=rejected, refused=refused)
+
+
+def _sent_back(catalog: LabelCatalog, shape_id: int, person_id: int, note: str, for_author: bool) -> Review:
+    head = catalog.head_revision(shape_id)
+    if head is None:
+        raise NotFoundError(f"shape {shape_id} has no labels to send back")
+    opened = [review for review in catalog.reviews(shape_id) if review.resolved_at is None]
+    if any(review.reason is ReviewReason.REWORK for review in opened):
+        raise ConflictError(f"labels are sent back once but those of shape {shape_id} were already; await better ones")
+    review = opened[0] if opened else catalog.add_review(head.id, NewReview(ReviewReason.CHECK))
+    return catalog.reject_review(review.id, person_id, note, for_author=for_author)
 
 
 def _refuse_foreign(catalog: LabelCatalog, shape_id: int, review_id: int) -> None:

@@ -13,20 +13,25 @@ from partwise.labels.fold import FoldedLog, fold
 from partwise.labels.stroke_json import stroke_from_document
 from partwise.labels.strokes import Stroke, StrokeLog
 from partwise.mesh import TriMesh
+from partwise.store.catalog import Catalog
 from partwise.store.meshes import keep_mesh
 from partwise.store.records import (
+    Answer,
     Closeness,
     Confirmation,
     Draft,
     DraftOutcome,
+    LabelRevision,
     Lease,
     LeasePurpose,
     NewBlindCheck,
     NewConfirmation,
     NewConsensus,
     NewDraft,
+    NewRevision,
     RevisionKind,
 )
+from partwise.workspace.accepting import settle_rechecks
 from partwise.workspace.consensus import closeness, compared
 from partwise.workspace.shapes import load_mesh, shape_mesh
 from partwise.workspace.workspace import Workspace
@@ -98,6 +103,16 @@ def confirm(
         closed, other labels than the person saw, or the shape is with someone else.
     LabelError : strokes that cannot be replayed, or a part that the schema has lost.
     """
+    confirmation = _confirmed(workspace, draft_id, person_id, n_strokes, expected_sha256)
+    if confirmation.revision_id is not None:
+        collection_id = workspace.catalog.draft(draft_id).collection_id
+        settle_rechecks(workspace, collection_id, confirmation.shape_id)
+    return confirmation
+
+
+def _confirmed(
+    workspace: Workspace, draft_id: int, person_id: int, n_strokes: int, expected_sha256: str | None
+) -> Confirmation:
     draft = workspace.catalog.draft(draft_id)
     if draft.outcome is DraftOutcome.DISCARDED:
         raise ConflictError(f"a draft must be open to be confirmed but draft {draft_id} is discarded; open another")
@@ -148,6 +163,27 @@ def _blind_check(workspace: Workspace, work: DraftWork, folded: FoldedLog) -> Ne
     if reference is None or reference.mesh_hash != work.draft.mesh_hash:
         return None
     return NewBlindCheck(reference.id, closeness(work.mesh, folded.labels, workspace.catalog.labels(reference.id)))
+
+
+def choose_answer(catalog: Catalog, answer: Answer, reviewer: str) -> LabelRevision:
+    """Makes one of several people's labels the shape's, in the name of who gave them.
+
+    Raises
+    ------
+    LabelError : a part that they name is gone, or their mesh.
+    """
+    head = catalog.head_revision(answer.shape_id)
+    revision = NewRevision(
+        answer.shape_id,
+        answer.mesh_hash,
+        RevisionKind.HUMAN,
+        answer.person_id,
+        answer.schema_version,
+        catalog.answer_labels(answer.id),
+        None if head is None else head.id,
+    )
+    catalog.append_audit(reviewer, "choose labels", f"shape {answer.shape_id}", {"answer_id": answer.id})
+    return catalog.add_revision(revision)
 
 
 def _strokes(workspace: Workspace, draft: Draft) -> list[Stroke]:

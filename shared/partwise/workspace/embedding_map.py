@@ -3,6 +3,7 @@
 The stored embedding is large; what the map needs of it is put beside it on first use.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,6 +53,24 @@ def read_embedding_map(workspace: Workspace, key: str) -> EmbeddingMap:
         workspace.arrays.put_bytes(map_key, save(_drawn(load(workspace.arrays.get_bytes(key)))))
     arrays = load(workspace.arrays.get_bytes(map_key))
     return EmbeddingMap(key, arrays["shape_ids"], arrays["points"])
+
+
+def spread_out(drawn: EmbeddingMap, shape_ids: Sequence[int], n_wanted: int) -> list[int]:
+    """So many of the shapes as far apart on the map as can be: from the middle of them on, each farthest from the rest.
+
+    Shapes that are not on the map are left out. Source: Gonzalez 1985, within twice the best radius.
+    """
+    rows = np.flatnonzero(np.isin(drawn.shape_ids, np.asarray(shape_ids, dtype=np.int64)))
+    if not len(rows):
+        return []
+    points = drawn.points[rows].astype(np.float64)
+    taken = [int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
+    distances = np.linalg.norm(points - points[taken[0]], axis=1)
+    while len(taken) < min(n_wanted, len(rows)):
+        distances[taken] = -1.0  # of shapes in the very same place each may be taken
+        taken.append(int(np.argmax(distances)))
+        distances = np.minimum(distances, np.linalg.norm(points - points[taken[-1]], axis=1))
+    return drawn.shape_ids[rows[taken]].tolist()
 
 
 def _drawn(embedding: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -7,6 +7,7 @@ is not there and `StoreError` when the database cannot be reached or written, be
 
 from typing import Protocol
 
+from partwise.store.catalog.accepts import AcceptCatalog
 from partwise.store.catalog.collections import AuditCatalog, CollectionCatalog
 from partwise.store.catalog.drafts import DraftCatalog
 from partwise.store.catalog.events import EventCatalog
@@ -21,6 +22,7 @@ from partwise.store.catalog.tokens import TokenCatalog
 
 __all__ = [
     "SHOWN_KINDS",
+    "AcceptCatalog",
     "AuditCatalog",
     "Catalog",
     "CollectionCatalog",
@@ -49,6 +51,7 @@ class Catalog(
     TokenCatalog,
     EventCatalog,
     ListingCatalog,
+    AcceptCatalog,
     AuditCatalog,
     Protocol,
 ):

@@ -10,6 +10,7 @@ from partwise.labels.strokes import Stroke
 from partwise.store.records import (
     Answer,
     BlindCheck,
+    BlindCheckDay,
     Confirmation,
     Consensus,
     Draft,
@@ -100,6 +101,21 @@ class DraftCatalog(Protocol):
         """The rounds of independent labels of a shape that are complete, oldest first."""
         ...
 
-    def blind_checks(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[BlindCheck]:
-        """A page of blind checks by id. For those who run the collection, never for who was checked."""
+    def blind_checks(
+        self,
+        collection_id: int,
+        *,
+        after: int = 0,
+        limit: int = 1000,
+        person_id: int | None = None,
+        but_person_id: int | None = None,
+    ) -> Sequence[BlindCheck]:
+        """A page of blind checks by id, of one person or of all but one if given.
+
+        For those who run the collection, never for who was checked.
+        """
+        ...
+
+    def blind_check_days(self, collection_id: int) -> Sequence[BlindCheckDay]:
+        """How close each person's labels came on each day, by person and day."""
         ...

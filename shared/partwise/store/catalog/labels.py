@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import UInt16
 
 from partwise.store.records import LabelRevision, NewRevision, RevisionKind
-from partwise.store.reviews import NewReview, Review
+from partwise.store.reviews import NewReview, Review, ReviewReason
 
 SHOWN_KINDS = (RevisionKind.HUMAN, RevisionKind.IMPORTED)
 """Kinds of revision that may be shown and trained on."""
@@ -72,8 +72,10 @@ class LabelCatalog(Protocol):
         """
         ...
 
-    def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
-        """A page of the reviews that wait for someone, by review id."""
+    def open_reviews(
+        self, collection_id: int, *, after: int = 0, limit: int = 1000, reason: ReviewReason | None = None
+    ) -> Sequence[Review]:
+        """A page of the reviews that wait for someone, of one reason if given, by review id."""
         ...
 
     def reviews(self, shape_id: int) -> Sequence[Review]:

@@ -3,10 +3,12 @@
 `New…` records are what a caller hands in; the others are what the catalog returns. Times are aware UTC datetimes.
 """
 
+from partwise.store.records.accepts import AcceptBatch, Recheck, RecheckResult
 from partwise.store.records.collections import AuditEntry, Collection, Person
 from partwise.store.records.confirmations import (
     Answer,
     BlindCheck,
+    BlindCheckDay,
     Closeness,
     Confirmation,
     Consensus,
@@ -72,9 +74,11 @@ __all__ = [
     "COALESCED_KINDS",
     "DEFAULT_RANKING",
     "MAX_HELD",
+    "AcceptBatch",
     "Answer",
     "AuditEntry",
     "BlindCheck",
+    "BlindCheckDay",
     "Block",
     "Closeness",
     "Collection",
@@ -127,6 +131,8 @@ __all__ = [
     "QueueAnchor",
     "QueueDepth",
     "QueueRow",
+    "Recheck",
+    "RecheckResult",
     "RevisionKind",
     "Role",
     "RunStatus",

@@ -1,7 +1,7 @@
 """Labels that people hand in, how well they agree, and how right they are where that is known."""
 
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime
 
 import numpy as np
 from jaxtyping import Integer
@@ -85,6 +85,16 @@ class BlindCheck:
     reference_id: int
     closeness: Closeness
     checked_at: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class BlindCheckDay:
+    """Means over the blind checks of a person on a day (UTC)."""
+
+    person_id: int
+    day: date
+    n_checks: int
+    mean: Closeness
 
 
 @dataclass(frozen=True, slots=True)

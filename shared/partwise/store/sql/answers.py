@@ -1,11 +1,11 @@
 """Labels that are put aside: to be compared with other people's, or with a reference."""
 
-from datetime import datetime
+from datetime import date, datetime
 from typing import Any
 
 import numpy as np
 from jaxtyping import UInt16
-from sqlalchemy import Connection, Row, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Row, func, insert, select
 
 from partwise.errors import NotFoundError
 from partwise.labels.checks import checked_labels
@@ -14,6 +14,7 @@ from partwise.store import tables as t
 from partwise.store.records import (
     Answer,
     BlindCheck,
+    BlindCheckDay,
     Closeness,
     Consensus,
     Draft,
@@ -124,10 +125,42 @@ def add_blind_check(connection: Connection, draft: Draft, answer_id: int, check:
     connection.execute(insert(t.blind_check).values(values | _columns(check.closeness)))
 
 
-def blind_checks(connection: Connection, collection_id: int, after: int, limit: int) -> list[BlindCheck]:
+def blind_checks(
+    connection: Connection,
+    collection_id: int,
+    after: int,
+    limit: int,
+    person_id: int | None,
+    but_person_id: int | None,
+) -> list[BlindCheck]:
     check = t.blind_check
     query = select(check).where(check.c.collection_id == collection_id, check.c.id > after)
+    if person_id is not None:
+        query = query.where(check.c.person_id == person_id)
+    if but_person_id is not None:
+        query = query.where(check.c.person_id != but_person_id)
     return [BlindCheck(**_with_closeness(row)) for row in connection.execute(query.order_by(check.c.id).limit(limit))]
+
+
+def blind_check_days(connection: Connection, collection_id: int) -> list[BlindCheckDay]:
+    check = t.blind_check.c
+    at: ColumnElement[datetime] = check.checked_at
+    if connection.dialect.name == "postgresql":  # SQLite's times are in UTC as they are
+        at = func.timezone("UTC", at)
+    day = func.date(at).label("day")
+    means = (func.avg(check.area_agreement), func.avg(check.part_iou), func.avg(check.boundary_distance))
+    query = (
+        select(check.person_id, day, func.count(), *means)
+        .where(check.collection_id == collection_id)
+        .group_by(check.person_id, day)
+        .order_by(check.person_id, day)
+    )
+    return [
+        BlindCheckDay(
+            person_id, date.fromisoformat(str(on)), n_checks, Closeness(*(min(mean, 1.0) for mean in measured))
+        )
+        for person_id, on, n_checks, *measured in connection.execute(query)
+    ]
 
 
 def _columns(closeness: Closeness) -> dict[str, float]:

@@ -176,7 +176,12 @@ def close_draft(
     now: datetime,
     cost: AnnotationCost | None = None,
 ) -> Draft:
-    values = {"closed_at": now, "updated_at": now, "outcome": outcome.value, "labels_sha256": labels_sha256}
+    values: dict[str, Any] = {
+        "closed_at": now,
+        "updated_at": now,
+        "outcome": outcome.value,
+        "labels_sha256": labels_sha256,
+    }
     if cost is not None:
         values |= {"active_s": cost.active_s, "n_clicks": cost.clicks}
     statement = update(t.draft).where(t.draft.c.id == draft_id).values(values).returning(t.draft)

@@ -75,7 +75,9 @@ def _refuse_unfit(connection: Connection, revision_id: int) -> Row[Any, Any, Any
     return found
 
 
-def open_reviews(connection: Connection, collection_id: int, after: int, limit: int) -> Sequence[Review]:
+def open_reviews(
+    connection: Connection, collection_id: int, after: int, limit: int, reason: ReviewReason | None
+) -> Sequence[Review]:
     schema_version(connection, collection_id)
     query = (
         select(t.review)
@@ -83,6 +85,8 @@ def open_reviews(connection: Connection, collection_id: int, after: int, limit: 
         .order_by(t.review.c.id)
         .limit(limit)
     )
+    if reason is not None:
+        query = query.where(t.review.c.reason == reason.value)
     return [_review(row) for row in connection.execute(query)]
 
 

@@ -1,5 +1,6 @@
 """`SqlCatalog`: the catalog on SQLite or PostgreSQL. Each method opens one transaction and leaves the rest to `sql`."""
 
+from partwise.store.sql_catalog.accepts import SqlAcceptCatalog
 from partwise.store.sql_catalog.base import SqlBase as SqlBase
 from partwise.store.sql_catalog.base import utc_now as utc_now
 from partwise.store.sql_catalog.collections import SqlCollectionCatalog
@@ -27,6 +28,7 @@ class SqlCatalog(
     SqlTokenCatalog,
     SqlEventCatalog,
     SqlListingCatalog,
+    SqlAcceptCatalog,
 ):
     """A catalog in a database of the known schema; get one from `partwise.store.open`. Safe to share between threads.
 

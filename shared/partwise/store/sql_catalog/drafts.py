@@ -67,6 +67,18 @@ class SqlDraftCatalog(SqlBase):
         with reading(self._engine) as connection:
             return answers.consensus_of(connection, shape_id)
 
-    def blind_checks(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[r.BlindCheck]:
+    def blind_checks(
+        self,
+        collection_id: int,
+        *,
+        after: int = 0,
+        limit: int = 1000,
+        person_id: int | None = None,
+        but_person_id: int | None = None,
+    ) -> Sequence[r.BlindCheck]:
         with reading(self._engine) as connection:
-            return answers.blind_checks(connection, collection_id, after, limit)
+            return answers.blind_checks(connection, collection_id, after, limit, person_id, but_person_id)
+
+    def blind_check_days(self, collection_id: int) -> Sequence[r.BlindCheckDay]:
+        with reading(self._engine) as connection:
+            return answers.blind_check_days(connection, collection_id)

@@ -9,7 +9,7 @@ from jaxtyping import UInt16
 from partwise.store import records as r
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.engine import reading, writing
-from partwise.store.reviews import NewReview, Review
+from partwise.store.reviews import NewReview, Review, ReviewReason
 from partwise.store.sql import labels, reviews
 from partwise.store.sql_catalog.base import SqlBase
 
@@ -59,9 +59,11 @@ class SqlLabelCatalog(SqlBase):
         with writing(self._engine) as connection:
             return reviews.open_review(connection, revision_id, review, self._clock())
 
-    def open_reviews(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Review]:
+    def open_reviews(
+        self, collection_id: int, *, after: int = 0, limit: int = 1000, reason: ReviewReason | None = None
+    ) -> Sequence[Review]:
         with reading(self._engine) as connection:
-            return reviews.open_reviews(connection, collection_id, after, limit)
+            return reviews.open_reviews(connection, collection_id, after, limit, reason)
 
     def reviews(self, shape_id: int) -> Sequence[Review]:
         with reading(self._engine) as connection:
