@@ -1,13 +1,17 @@
 """What each kind of job does. `HANDLERS` is the list of them."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 
+from partwise.errors import NotEnoughDataError
 from partwise.store.records import JobKind, Model, ShapeState
 from partwise.workspace.first_shapes import select_first_shapes
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.ranking import refill_queue
 from partwise.workspace.relabel import MoveReport
 from partwise.workspace.similarity import most_similar_first
+from partwise_cli.jobs.export import export
+from partwise_cli.jobs.ingest import ingest
 from partwise_cli.jobs.reranking import Reranking, make_orderings
 from partwise_cli.jobs.stage_events import StageTally
 from partwise_cli.jobs.turns import Turn
@@ -43,7 +47,8 @@ def _select(work: Work) -> None:
     n_described = sum(n for state, n in counts.items() if state not in (ShapeState.NEW, ShapeState.FAILED))
     n_clusters = min(N_CLUSTERS, n_described // N_PER_CLUSTER)
     if n_clusters:
-        select_first_shapes(work.workspace, work.collection, n_clusters, N_PER_CLUSTER, SEED)
+        with suppress(NotEnoughDataError):  # shapes that are all alike are as good first as any other
+            select_first_shapes(work.workspace, work.collection, n_clusters, N_PER_CLUSTER, SEED)
 
 
 def train(work: Work) -> None:
@@ -131,5 +136,7 @@ HANDLERS: Mapping[JobKind, Handler] = {
     JobKind.EVALUATE: evaluate,
     JobKind.REFINE: refine,
     JobKind.REFILL: refill,
+    JobKind.INGEST: ingest,
+    JobKind.EXPORT: export,
 }
 """What a worker can do: it takes jobs of these kinds. Modules of handlers load Ray and torch when they need them."""

@@ -20,7 +20,7 @@ logger = logging.getLogger(__name__)
 
 
 class Pulse:
-    """Of one job while the block lasts. beat : called after each sign of life, in the pulse's thread."""
+    """Of one job while the block lasts."""
 
     def __init__(
         self,
@@ -28,14 +28,12 @@ class Pulse:
         job: Job,
         owner: str,
         config: JobsConfig,
-        beat: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._catalog = catalog
         self._job_id = job.id
         self._owner = owner
         self._config = config
-        self._beat = beat
         self._clock = clock
         self._heard_at = clock()
         self._progress: Progress | None = None
@@ -72,7 +70,6 @@ class Pulse:
             self.give()
             if self._why is not None:
                 return
-            self._beat()
 
     def give(self) -> None:
         """One sign of life. Where the catalog cannot be reached for long, the job counts as lost, as it does there."""

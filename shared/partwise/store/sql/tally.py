@@ -7,7 +7,7 @@ from sqlalchemy import Connection, update
 from partwise.store import tables as t
 from partwise.store.records import EventKind, JobKind, NewEvent
 from partwise.store.sql.dialect import insert_for
-from partwise.store.sql.jobs import enqueue
+from partwise.store.sql.jobs import enqueue, job_event
 from partwise.store.sql.places import collection_queue_settings
 
 
@@ -24,7 +24,7 @@ def count_confirmed(connection: Connection, collection_id: int, now: datetime) -
         return []
     job, is_new = enqueue(connection, collection_id, JobKind.TRAIN, None, now)
     payload = {"job_id": job.id, "state": job.state.value, "n_confirmed": n_confirmed}
-    return [NewEvent(EventKind.TRAINING, collection_id, payload)] if is_new else []
+    return [NewEvent(EventKind.TRAINING, collection_id, payload), job_event(job)] if is_new else []
 
 
 def restart_count(connection: Connection, collection_id: int) -> None:
