@@ -13,7 +13,7 @@ from partwise.testing.plain_paint import plain_painted
 Mesh = tuple[np.ndarray, np.ndarray]
 PROVENANCE = (
     "Meshes from tests/golden/paint/make.py; faces from partwise.testing.plain_paint, the specification in "
-    "docs/segmentation.md word by word in plain Python, CPython 3.11 on x86-64; paint.mjs agrees."
+    "docs/segmentation.md word by word in plain Python, CPython 3.11 on x86-64; the page's TypeScript agrees."
 )
 
 

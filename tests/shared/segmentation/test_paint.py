@@ -2,8 +2,6 @@
 
 import json
 import math
-import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -49,12 +47,6 @@ def test_golden_strokes_take_the_recorded_faces(name: str) -> None:
 
 def test_golden_strokes_are_there() -> None:
     assert len(_GOLDEN_FILES) == 6
-
-
-@pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
-def test_golden_strokes_are_the_same_in_javascript() -> None:
-    run = subprocess.run(["node", str(_GOLDEN / "paint.mjs")], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == f"{sum(len(_golden(name)['cases']) for name in _GOLDEN_FILES)} strokes agree"
 
 
 @settings(max_examples=60, deadline=None)
