@@ -5,11 +5,12 @@ from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query
+from pydantic import Field
 
 from partwise.store.catalog import SHOWN_KINDS, Catalog
 from partwise.store.records import ANY_STAGE, BY_NAME, ListedShape, Role, ShapeFilter, ShapeOrder, ShapeState
 from partwise.workspace.provenance import FailureCard, ProvenanceCard, provenance
-from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep
+from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep, shapes_of
 from partwise_service.schemas.base import MAX_ROW_ID, Page
 from partwise_service.schemas.paging import anchor_of, cursor_of
 from partwise_service.schemas.shapes import (
@@ -22,6 +23,7 @@ from partwise_service.schemas.shapes import (
     RevisionsOut,
     ShapeOut,
     ShapeRow,
+    ShapeRows,
 )
 
 MAX_PAGE = 500
@@ -34,6 +36,7 @@ router = APIRouter(tags=["shapes"])
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE, description="Rows of a page, at most.")]
 After = Annotated[str | None, Query(max_length=80, description="`next` of the page before.")]
 Id = Annotated[int | None, Query(ge=0, le=MAX_ROW_ID)]
+NamedId = Annotated[int, Field(ge=1, le=MAX_ROW_ID)]
 StageName = Annotated[
     str | None, Query(pattern="^[a-z_]{1,64}$", description=f"The stage that failed, `{ANY_STAGE}` for whichever.")
 ]
@@ -103,6 +106,19 @@ def jump_to_rank(
     else:
         rows = catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit)
     return RankedShapes(n_shapes=n_shapes, built_at=built_at, items=_with_tiles(catalog, rows, first_rank))
+
+
+@router.get("/collections/{collection_id}/shapes/rows")
+def list_rows(
+    collection: ScopedCollection,
+    catalog: CatalogDep,
+    order: Order,
+    ids: Annotated[list[NamedId], Query(alias="id", min_length=1, max_length=MAX_PAGE, description="Again for more.")],
+) -> ShapeRows:
+    """These shapes, in the order in which they are named, such as those picked on the map."""
+    named = [shape.id for shape in shapes_of(catalog, collection, ids)]
+    rows = catalog.listed_shapes(named, order.score_name if order.score_name != BY_NAME else None)
+    return ShapeRows(items=_with_tiles(catalog, [rows[shape_id] for shape_id in named]))
 
 
 @router.get("/collections/{collection_id}/orders")

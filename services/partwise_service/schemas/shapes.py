@@ -71,6 +71,10 @@ class ShapeRow(Answer):
         )
 
 
+class ShapeRows(Answer):
+    items: list[ShapeRow]
+
+
 class RankedShapes(Answer):
     """A stretch of an order, from a rank on. n_shapes : in the whole order, under the same filters.
 

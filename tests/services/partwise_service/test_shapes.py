@@ -187,3 +187,15 @@ def test_reference_labels_are_never_shown(admin, workspace, mugs) -> None:
     assert [each["id"] for each in admin.get(f"{path}/revisions").json()["items"]] == [shown]
     assert admin.get(f"{path}/labels", params={"revision": hidden}).status_code == 404
     assert "reference" not in admin.get(path).text
+
+
+def test_rows_of_shapes_by_name_of_their_ids_in_that_order(annotator, mugs, table) -> None:
+    ids = [mugs.ids["sub/c.off"], mugs.ids["a.off"], mugs.ids["sub/c.off"]]
+    shown = annotator.get(f"{table}/rows", params={"id": ids, "order": "entropy"})
+    assert _keys(shown) == ["sub/c.off", "a.off"]
+    assert all(row["score"] is not None for row in shown.json()["items"])
+
+
+def test_rows_of_shapes_that_are_not_there_are_refused(annotator, mugs, table) -> None:
+    assert annotator.get(f"{table}/rows", params={"id": [mugs.ids["a.off"], 9_999]}).status_code == 404
+    assert annotator.get(f"{table}/rows").status_code == 422
