@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from partwise.exchange.ply_labels import colour_faces
+from partwise.labels.palette import rgb
 from partwise.render.contact_sheet import LegendEntry, Tile, contact_sheet, save_png
 from partwise.store.records import Collection, Shape
 from partwise.workspace.assessment import ShapeAccuracy
-from partwise.workspace.export import rgb
 from partwise.workspace.segmentations import Segmentation, segment
 from partwise.workspace.shapes import load_mesh
 from partwise.workspace.workspace import Workspace

@@ -6,6 +6,7 @@ import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
 from partwise.errors import NotFoundError
+from partwise.labels.palette import rgb
 from partwise.render.thumbnail import colour_thumbnail
 from partwise.store.meshes import mesh_arrays
 from partwise.workspace.choices import Segmentation
@@ -83,12 +84,8 @@ def get_thumbnail(
         return held
     face_ids, shading = picture.read()
     ids = _labels_or_none(labels, int(face_ids.max()) + 1)
-    return png_response(colour_thumbnail(face_ids, shading, ids, {k: _rgb(v) for k, v in colours.items()}), tag)
+    return png_response(colour_thumbnail(face_ids, shading, ids, {k: rgb(v) for k, v in colours.items()}), tag)
 
 
 def _labels_or_none(labels: ShownLabels | None, n_faces: int) -> np.ndarray:
     return np.zeros(max(n_faces, 1), dtype=np.uint16) if labels is None else labels.read()
-
-
-def _rgb(colour: str) -> tuple[int, int, int]:
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)

@@ -9,12 +9,13 @@ from partwise.errors import NotFoundError, StaleDraftError
 from partwise.labels.replay import replay
 from partwise.labels.stroke_json import stroke_from_document
 from partwise.store.catalog import Catalog
-from partwise.store.records import Draft, Role
+from partwise.store.records import Draft
 from partwise.workspace.confirming import begin_draft, confirm, draft_work
 from partwise.workspace.labelling import keep_mesh
 from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
 from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, WorkspaceDep
 from partwise_service.held_leases import visible_lease
+from partwise_service.ownership import visible_row
 from partwise_service.problems import ProblemError, ProblemKind
 from partwise_service.schemas.base import RowId
 from partwise_service.schemas.drafts import (
@@ -165,15 +166,7 @@ def visible_draft(catalog: Catalog, caller: Identity, draft_id: int) -> Draft:
     ------
     NotFoundError : it is not there, or not for them.
     """
-    missing = NotFoundError(f"there is no draft {draft_id} of yours; see /drafts")
-    try:
-        draft = catalog.draft(draft_id)
-    except NotFoundError as error:
-        raise missing from error
-    is_theirs = draft.person_id == caller.person_id or caller.role.includes(Role.OPERATOR)
-    if not is_theirs or not caller.may_see(draft.collection_id):
-        raise missing
-    return draft
+    return visible_row(caller, lambda: catalog.draft(draft_id), f"there is no draft {draft_id} of yours; see /drafts")
 
 
 def _tagged(response: Response, draft: Draft) -> DraftOut:

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Int
 
 from partwise.errors import LabelError, ParameterError
+from partwise.labels.palette import rgb
 from partwise.unlabelled import NO_CLASS
 
 Rgb = tuple[int, int, int]
@@ -37,8 +38,7 @@ class PartEntry:
     @property
     def rgb(self) -> Rgb:
         """Red, green and blue, 0 to 255."""
-        red, green, blue = bytes.fromhex(self.colour.removeprefix("#"))
-        return red, green, blue
+        return rgb(self.colour)
 
 
 @dataclass(frozen=True, slots=True)

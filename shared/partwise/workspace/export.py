@@ -243,9 +243,3 @@ def _move(names: list[str], staging: Path, out: Path) -> None:
 def _faces_per_part(labels: Int[np.ndarray, " m"]) -> dict[int, int]:
     part_ids, counts = np.unique(labels, return_counts=True)
     return dict(zip(part_ids.tolist(), counts.tolist(), strict=True))
-
-
-def rgb(colour: str) -> tuple[int, int, int]:
-    """`#E69F00` as (230, 159, 0)."""
-    red, green, blue = bytes.fromhex(colour.removeprefix("#"))
-    return red, green, blue

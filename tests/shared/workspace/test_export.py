@@ -18,7 +18,7 @@ from partwise.store.records import RevisionKind
 from partwise.testing.expect import raises
 from partwise.testing.workspaces import ingest, publish_meshes
 from partwise.workspace.choices import ExportFormat, PointSampling, Segmentation
-from partwise.workspace.export import MANIFEST, export_labels, rgb
+from partwise.workspace.export import MANIFEST, export_labels
 from partwise.workspace.export_files import ENDINGS
 from partwise.workspace.labelling import commit_labels, import_labels
 
@@ -217,7 +217,3 @@ def test_labels_with_a_part_that_was_removed_since_are_refused(filled, tmp_path:
     with raises(ParameterError, "a.off", "[2]"):
         _export(filled, tmp_path / "out", Segmentation.REFINED)
     assert not (tmp_path / "out").exists()
-
-
-def test_a_colour_is_three_numbers() -> None:
-    assert rgb("#E69F00") == (230, 159, 0)
