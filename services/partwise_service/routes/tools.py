@@ -69,7 +69,7 @@ def boundaries_call(
         raise ProblemError(ProblemKind.INVALID, "`anchor_n_strokes` goes with `draft_id` and without `anchor_runs`.")
     work = None if wish.draft_id is None else _work(workspace, caller, shape, wish.draft_id)
     mesh = shape_mesh(workspace, shape) if work is None else workspace.catalog.mesh(shape.id, work.draft.mesh_hash)
-    parameters = BOUNDARY_PRESETS[wish.preset]
+    parameters = workspace.config.boundary if wish.preset is None else BOUNDARY_PRESETS[wish.preset]
     if wish.omega is not None:
         parameters = replace(parameters, angle_weight=wish.omega)
     anchor: GivenLabels | None = None

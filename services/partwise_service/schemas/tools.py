@@ -31,7 +31,8 @@ class PatchesRequest(Request):
 class BoundariesRequest(Request):
     """Either `runs` or `draft_id` says where to start.
 
-    omega : weight of angles against the change of shape diameter; the preset's own without one.
+    preset : how, by name; without one as section [boundary] of the workspace's partwise.toml says.
+    omega : weight of angles against the change of shape diameter, in place of that of the preset or the section.
     anchor_runs, anchor_n_strokes : the labels to stay near, those that the person last set, as runs, or as the draft's
         after so many strokes; without either, those it starts from.
     """
@@ -39,7 +40,7 @@ class BoundariesRequest(Request):
     runs: Runs | None = None
     draft_id: AnyId | None = None
     omega: Share | None = None
-    preset: PresetName = "default"
+    preset: PresetName | None = None
     anchor_runs: Runs | None = None
     anchor_n_strokes: Sequence | None = None
 

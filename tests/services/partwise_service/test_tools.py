@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from safetensors.numpy import load
 
+from partwise.segmentation.parameters import BOUNDARY_PRESETS
+from partwise.store.records import Role, Token
+from partwise.workspace.workspace import open_workspace
 from partwise_service.array_responses import SAFETENSORS
+from partwise_service.routes.tools import boundaries_call
+from partwise_service.schemas.tools import BoundariesRequest
+from partwise_service.security.identity import Identity
 
 JSON = {"Accept": "application/json"}
 
@@ -105,3 +111,16 @@ def test_a_draft_of_another_shape_is_not_found(annotator, workspace, mugs) -> No
 def test_shapes_outside_the_scope_have_no_tools(annotator, mugs, tool) -> None:
     body = {"patches": {"n_patches": 1}, "refine-boundaries": {"runs": [[1, 4]]}}.get(tool, {})
     assert annotator.post(f"/shapes/{mugs.other_shape_id}/{tool}", json=body).status_code == 404
+
+
+@pytest.mark.parametrize(("body", "expected"), [({}, 0.75), ({"omega": 0.25}, 0.25), ({"preset": "paper"}, None)])
+def test_boundaries_are_refined_as_the_workspace_says(mugs, body, expected) -> None:
+    config = mugs.path / "partwise.toml"
+    config.write_text(config.read_text() + "\n[boundary]\nangle_weight = 0.75\n")
+    with open_workspace(mugs.path) as workspace:
+        token = Token(**{**dict.fromkeys(Token.__dataclass_fields__), "person_id": 1, "role": Role.ANNOTATOR})
+        shape = workspace.catalog.shapes_by_id([mugs.ids["b.off"]])[mugs.ids["b.off"]]
+        wish = BoundariesRequest(runs=[(1, mugs.meshes["b.off"].n_faces)], **body)
+        call = boundaries_call(Identity(token), shape, workspace, wish)
+    wanted = BOUNDARY_PRESETS["paper"].angle_weight if expected is None else expected
+    assert call.parameters.angle_weight == wanted
