@@ -34,6 +34,7 @@ from partwise.store import tables as t
 from partwise.store.engine import writing
 from partwise.store.records import RevisionKind, RunStatus, ShapeState
 from partwise.store.reviews import ReviewReason
+from partwise.store.tables.listing import FACETS
 from partwise.workspace.choices import ScoreName
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE, MESH, REFINE, REMESH
 
@@ -126,8 +127,8 @@ def _add_facets(connection: Connection, request: RowsRequest) -> None:
     )
     is_late = _uniform(shape_id, request.seed, "stage") < 0.2
     failed = case((state == ShapeState.FAILED.value, case((is_late, DESCRIBE), else_=REMESH)))
-    columns = ("shape_id", "collection_id", "state", "author_id", "failed_stage", "cluster")
-    rows = select(shape_id, t.shape.c.collection_id, state, author, failed, cluster)
+    columns = ("shape_id", "collection_id", "source_key", "state", "author_id", "failed_stage", "cluster")
+    rows = select(shape_id, t.shape.c.collection_id, t.shape.c.source_key, state, author, failed, cluster)
     is_known = exists().where(t.shape_facet.c.shape_id == shape_id)
     rows = rows.where(t.shape.c.collection_id == request.collection_id, ~is_known).order_by(shape_id)
     connection.execute(insert(t.shape_facet).from_select(columns, rows))
@@ -216,6 +217,7 @@ def _add_scores(connection: Connection, request: RowsRequest) -> None:
             "value": value,
             "scored_at": _time(),
             "collection_id": facet.collection_id,
+            **{name: facet[name] for name in FACETS},
         }
         rows = _rows_of(request, _UNSURFACED, *score.values(), but=True)
         connection.execute(insert(t.score).from_select(list(score), rows))

@@ -7,7 +7,7 @@ from urllib.parse import urlencode
 import numpy as np
 
 from partwise.errors import StoreError
-from partwise.store.records import ListAnchor, ShapeState
+from partwise.store.records import BY_NAME, ListAnchor, ShapeState
 from partwise.workspace.choices import ScoreName
 from partwise.workspace.segmentations import DESCRIBE, REMESH
 from partwise_cli.bench.load_client import Answered, LoadClient
@@ -60,7 +60,9 @@ def _fixed(query: Query) -> Draw:
 
 def orders() -> dict[str, Query]:
     """Every order and direction."""
-    named: dict[str, Query] = {"id": {}} | {name.value: {"order": name.value} for name in ScoreName}
+    named: dict[str, Query] = {"id": {}, "name": {"order": BY_NAME}} | {
+        name.value: {"order": name.value} for name in ScoreName
+    }
     return {
         f"{name} {'down' if descending else 'up'}": {**query, "direction": "desc" if descending else "asc"}
         for name, query in named.items()

@@ -3,22 +3,25 @@
 from collections.abc import Collection as SizedIterable
 from collections.abc import Sequence
 
-from sqlalchemy import Connection, delete, insert, select, update
+from sqlalchemy import Connection, delete, insert, literal, or_, select, update
 
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import ShapeState
 from partwise.store.sql.dialect import batches, insert_for
 from partwise.store.sql.state import is_failed_run, shape_state
+from partwise.store.tables.listing import FACETS
 
 
 def add_facets(connection: Connection, collection_id: int, shape_ids: SizedIterable[int]) -> None:
     """For shapes that are new."""
-    rows = [
-        {"shape_id": shape_id, "collection_id": collection_id, "state": ShapeState.NEW.value} for shape_id in shape_ids
-    ]
-    if rows:
-        connection.execute(insert_for(connection, t.shape_facet).on_conflict_do_nothing(), rows)
+    shape = t.shape.c
+    columns = ("shape_id", "collection_id", "source_key", "state")
+    for some in batches(shape_ids):
+        new = select(shape.id, shape.collection_id, shape.source_key, literal(ShapeState.NEW.value))
+        rows = new.where(shape.collection_id == collection_id, shape.id.in_(some))
+        statement = insert_for(connection, t.shape_facet).from_select(columns, rows)
+        connection.execute(statement.on_conflict_do_nothing())
 
 
 def renew_facets(connection: Connection, shape_ids: SizedIterable[int]) -> None:
@@ -45,10 +48,25 @@ def renew_facets(connection: Connection, shape_ids: SizedIterable[int]) -> None:
         "failed_stage": failed.scalar_subquery(),
     }
     for some in batches(sorted(shape_ids)):
-        those = facet.c.shape_id.in_(some)
-        # in one order, so that two who renew many never wait for each other
-        connection.execute(select(facet.c.shape_id).where(those).order_by(facet.c.shape_id).with_for_update()).all()
-        connection.execute(update(facet).where(those).values(values))
+        lock_facets(connection, some)
+        connection.execute(update(facet).where(facet.c.shape_id.in_(some)).values(values))
+        copy_facets(connection, some)
+
+
+def lock_facets(connection: Connection, shape_ids: Sequence[int]) -> None:
+    """Before facets change, or scores beside which they stand; as many as a batch."""
+    shape_id = t.shape_facet.c.shape_id
+    # in one order, so that two who renew many never wait for each other
+    query = select(shape_id).where(shape_id.in_(shape_ids)).order_by(shape_id).with_for_update()
+    connection.execute(query).all()
+
+
+def copy_facets(connection: Connection, shape_ids: Sequence[int]) -> None:
+    """Beside the scores of these shapes, after their facets or their scores have changed; as many as a batch."""
+    facet, score = t.shape_facet.c, t.score.c
+    differs = or_(*(score[name].is_distinct_from(facet[name]) for name in FACETS))
+    statement = update(t.score).values({name: facet[name] for name in FACETS})
+    connection.execute(statement.where(facet.shape_id == score.shape_id, score.shape_id.in_(shape_ids), differs))
 
 
 def renew_head_parts(connection: Connection, collection_id: int, shape_id: int, part_ids: Sequence[int]) -> None:

@@ -4,7 +4,21 @@ from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Row, Select, and_, bindparam, exists, func, select, tuple_, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Row,
+    Select,
+    Table,
+    and_,
+    bindparam,
+    exists,
+    func,
+    literal,
+    select,
+    tuple_,
+    update,
+)
 
 from partwise.store import tables as t
 from partwise.store.records import (
@@ -19,10 +33,15 @@ from partwise.store.records import (
 )
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql.dialect import batches
+from partwise.store.sql.facets import copy_facets
 
-_FEW = 5_000
-"""Shapes up to which a filter's matches are all looked up and sorted. With more of them than that, enough are met while
-walking along the order."""
+_FEW = 1_000
+"""Shapes up to which a filter's matches are all looked up and sorted. With more of them than that, they are met while
+walking along the order's index, which says of every shape whether it is one.
+"""
+
+
+_NO_ID = 0
 
 
 def list_shapes(
@@ -34,67 +53,52 @@ def list_shapes(
     limit: int,
 ) -> list[ListedShape]:
     schema_version(connection, collection_id)
+    query = _ids(collection_id, where, order, _matches_if_few(connection, collection_id, where, order))
+    if after is not None:
+        query = query.where(_is_after(order, after))
+    return _in_order(connection, connection.execute(query.limit(limit)).scalars().all(), order)
+
+
+def _is_after(order: ShapeOrder, after: ListAnchor) -> ColumnElement[bool]:
+    place: ColumnElement[Any]
+    anchor: ColumnElement[Any]
     if order.score_name is None:
-        query = _by_id(collection_id, where, order.descending, after)
+        place, anchor = t.shape_facet.c.shape_id, literal(after.shape_id)
+    elif order.score_name == BY_NAME:  # a source key never changes: the anchor's id says it
+        place = t.shape_facet.c.source_key
+        anchor = select(t.shape.c.source_key).where(t.shape.c.id == after.shape_id).scalar_subquery()
     else:
-        few = _matches_if_few(connection, collection_id, where)
-        if order.score_name == BY_NAME:
-            query = _by_name(collection_id, where, order.descending, after, few)
-        else:
-            query = _by_score(collection_id, where, order.score_name, order.descending, after, few)
-    return [_listed(row) for row in connection.execute(query.limit(limit))]
-
-
-def _by_id(collection_id: int, where: ShapeFilter, is_descending: bool, after: ListAnchor | None) -> Select[Any]:
-    shape_id = t.shape_facet.c.shape_id
-    query = _of_part(_rows(None), where).where(*_conditions(collection_id, where))
-    if after is not None:
-        query = query.where(shape_id < after.shape_id if is_descending else shape_id > after.shape_id)
-    return query.order_by(shape_id.desc() if is_descending else shape_id)
-
-
-def _by_name(
-    collection_id: int, where: ShapeFilter, is_descending: bool, after: ListAnchor | None, few: Sequence[int] | None
-) -> Select[Any]:
-    key = t.shape.c.source_key
-    query = _rows(None).where(t.shape.c.collection_id == collection_id)
-    query = query.where(*_conditions(None, where)) if few is None else query.where(t.shape.c.id.in_(few))
-    if after is not None:  # a source key never changes: the anchor's id says it
-        last = select(t.shape.c.source_key).where(t.shape.c.id == after.shape_id).scalar_subquery()
-        query = query.where(key < last if is_descending else key > last)
-    return query.order_by(key.desc() if is_descending else key)
-
-
-def _by_score(
-    collection_id: int,
-    where: ShapeFilter,
-    score_name: str,
-    is_descending: bool,
-    after: ListAnchor | None,
-    few: Sequence[int] | None,
-) -> Select[Any]:
-    place = tuple_(t.score.c.value, t.score.c.shape_id)
-    query = _rows(score_name).where(t.score.c.collection_id == collection_id)
-    query = query.where(*_conditions(None, where)) if few is None else query.where(t.score.c.shape_id.in_(few))
-    if after is not None:
+        place = tuple_(t.score.c.value, t.score.c.shape_id)
         anchor = tuple_(after.value, after.shape_id)
-        query = query.where(place < anchor if is_descending else place > anchor)
-    columns = (t.score.c.value, t.score.c.shape_id)
-    return query.order_by(*(column.desc() if is_descending else column.asc() for column in columns))
+    return place < anchor if order.descending else place > anchor
 
 
-def _matches_if_few(connection: Connection, collection_id: int, where: ShapeFilter) -> Sequence[int] | None:
-    """Ids of all that meet the filter, None if they are many or nothing is filtered."""
-    if where == ShapeFilter():
+def _in_order(connection: Connection, shape_ids: Sequence[int], order: ShapeOrder) -> list[ListedShape]:
+    """Their rows, in this order."""
+    if not shape_ids:
+        return []
+    is_by_score = order.score_name not in (None, BY_NAME)
+    query = _rows(order.score_name if is_by_score else None).where(t.shape.c.id.in_(shape_ids))
+    rows = {row.id: _listed(row) for row in connection.execute(query)}
+    return [rows[shape_id] for shape_id in shape_ids]
+
+
+def _matches_if_few(
+    connection: Connection, collection_id: int, where: ShapeFilter, order: ShapeOrder
+) -> Sequence[int] | None:
+    """Ids of all that meet the filter; None if they are many, nothing is filtered, or an index has them in order."""
+    if where == ShapeFilter() or order.score_name is None:
         return None
-    query = _of_part(select(t.shape_facet.c.shape_id), where).where(*_conditions(collection_id, where))
+    facet = t.shape_facet
+    query = _of_part(select(facet.c.shape_id), where).where(*_conditions(facet, collection_id, where))
     found = connection.execute(query.limit(_FEW + 1)).scalars().all()
     return None if len(found) > _FEW else found
 
 
-def _conditions(collection_id: int | None, where: ShapeFilter) -> list[ColumnElement[bool]]:
-    facet = t.shape_facet.c
-    conditions = [] if collection_id is None else [facet.collection_id == collection_id]
+def _conditions(facets: Table, collection_id: int, where: ShapeFilter) -> list[ColumnElement[bool]]:
+    """Of all filters but that by part, on facets or on scores, beside which facets stand."""
+    facet = facets.c
+    conditions = [facet.collection_id == collection_id]
     if where.state is not None:
         conditions.append(facet.state == where.state.value)
     if where.author_id is not None:
@@ -105,14 +109,16 @@ def _conditions(collection_id: int | None, where: ShapeFilter) -> list[ColumnEle
         conditions.append(facet.failed_stage.is_not(None))
     elif where.failed_stage is not None:
         conditions.append(facet.failed_stage == where.failed_stage)
-    if where.part_id is not None and collection_id is None:
-        of_shape = and_(
-            t.head_part.c.collection_id == facet.collection_id,
-            t.head_part.c.part_id == where.part_id,
-            t.head_part.c.shape_id == facet.shape_id,
-        )
-        conditions.append(exists().where(of_shape))
     return conditions
+
+
+def _has_part(facets: Table, where: ShapeFilter) -> list[ColumnElement[bool]]:
+    """For a walk along an order: of shapes without labels, and so without an author, parts are not even looked for."""
+    if where.part_id is None:
+        return []
+    part = t.head_part.c
+    is_same = and_(part.collection_id == facets.c.collection_id, part.shape_id == facets.c.shape_id)
+    return [facets.c.author_id.is_not(None), exists().where(is_same, part.part_id == where.part_id)]
 
 
 def _of_part(query: Select[Any], where: ShapeFilter) -> Select[Any]:
@@ -173,44 +179,37 @@ def shapes_from_rank(
     limit: int,
 ) -> list[ListedShape]:
     schema_version(connection, collection_id)
-    few = None if order.score_name is None else _matches_if_few(connection, collection_id, where)
+    few = _matches_if_few(connection, collection_id, where, order)
     query = _ids(collection_id, where, order, few).offset(first_rank).limit(limit)
-    ids = connection.execute(query).scalars().all()
-    score_name = None if order.score_name == BY_NAME else order.score_name
-    rows = listed_shapes(connection, ids, score_name)
-    return [rows[shape_id] for shape_id in ids]
+    return _in_order(connection, connection.execute(query).scalars().all(), order)
 
 
 def count_shapes(connection: Connection, collection_id: int, where: ShapeFilter, order: ShapeOrder) -> int:
     schema_version(connection, collection_id)
-    few = None
-    if order.score_name in (None, BY_NAME):
-        ids = _ids(collection_id, where, ShapeOrder(), None)
-    else:
-        few = _matches_if_few(connection, collection_id, where)
-        ids = _ids(collection_id, where, order, few)
-    counted = ids.order_by(None).subquery()
+    counted_by = ShapeOrder() if order.score_name == BY_NAME else order
+    few = _matches_if_few(connection, collection_id, where, counted_by)
+    counted = _ids(collection_id, where, counted_by, few).order_by(None).subquery()
     return connection.execute(select(func.count()).select_from(counted)).scalar_one()
 
 
 def _ids(collection_id: int, where: ShapeFilter, order: ShapeOrder, few: Sequence[int] | None) -> Select[Any]:
-    """Ids alone: where nothing is filtered they are read from an index and no row is."""
-    facet, is_filtered = t.shape_facet.c, where != ShapeFilter()
-    columns: tuple[ColumnElement[Any], ...]
-    if order.score_name is None:
-        query, columns = select(facet.shape_id), (facet.shape_id,)
-        query = _of_part(query, where).where(*_conditions(collection_id, where))
+    """Ids in order, read from one index without a look at any row; from the part's index where that has the order."""
+    facets = t.shape_facet if order.score_name in (None, BY_NAME) else t.score
+    query = select(facets.c.shape_id)
+    columns: tuple[ColumnElement[Any], ...] = (t.shape_facet.c.shape_id,)
+    if order.score_name == BY_NAME:
+        columns = (t.shape_facet.c.source_key,)
+    elif order.score_name is not None:
+        columns = (t.score.c.value, t.score.c.shape_id)
+        query = query.where(t.score.c.name == order.score_name)
+    if few is not None:
+        # looked up one by one: nothing here is what an order's index begins with, lest the database walk along that
+        columns = (columns[0].concat("") if order.score_name == BY_NAME else columns[0] + 0.0, facets.c.shape_id)
+        query = query.where(facets.c.shape_id.in_(few or (_NO_ID,)))
+    elif order.score_name is None:
+        query = _of_part(query.where(*_conditions(facets, collection_id, where)), where)
     else:
-        if order.score_name == BY_NAME:
-            shape_id, columns = t.shape.c.id, (t.shape.c.source_key,)
-            query = select(shape_id).where(t.shape.c.collection_id == collection_id)
-        else:
-            shape_id, columns = t.score.c.shape_id, (t.score.c.value, t.score.c.shape_id)
-            query = select(shape_id).where(t.score.c.collection_id == collection_id, t.score.c.name == order.score_name)
-        if few is not None:
-            query = query.where(shape_id.in_(few))
-        elif is_filtered:
-            query = query.join(t.shape_facet, facet.shape_id == shape_id).where(*_conditions(None, where))
+        query = query.where(*_conditions(facets, collection_id, where), *_has_part(facets, where))
     return query.order_by(*(column.desc() if order.descending else column.asc() for column in columns))
 
 
@@ -233,6 +232,7 @@ def set_clusters(connection: Connection, collection_id: int, clusters: Mapping[i
     for some in batches(sorted(clusters)):
         rows = [{"of_shape": shape_id, "in_cluster": clusters[shape_id]} for shape_id in some]
         connection.execute(update(t.shape_facet).where(is_it).values(cluster=bindparam("in_cluster")), rows)
+        copy_facets(connection, some)
 
 
 def clusters(connection: Connection, shape_ids: SizedIterable[int]) -> dict[int, int]:

@@ -25,8 +25,9 @@ from partwise.store.records import (
     StageRun,
 )
 from partwise.store.sql.dialect import batches, insert_for
-from partwise.store.sql.facets import renew_facets
+from partwise.store.sql.facets import copy_facets, lock_facets, renew_facets
 from partwise.store.sql.places import renew_places
+from partwise.store.sql.rounds import tally_scores
 from partwise.store.sql.shapes import add_meshes, refuse_unknown_shapes
 from partwise.store.sql.state import is_current_run, is_failed_run
 
@@ -132,6 +133,7 @@ def _upsert_scores(
     _refuse_foreign_models(connection, scores, shapes)
     if not scores:
         return
+    tally_scores(connection, scores)
     statement = insert_for(connection, t.score)
     rows = [
         {
@@ -144,7 +146,9 @@ def _upsert_scores(
         }
         for score in scores
     ]
-    newer = statement.excluded
+    newer, scored = statement.excluded, list(batches(sorted({score.shape_id for score in scores})))
+    for some in scored:
+        lock_facets(connection, some)
     connection.execute(
         statement.on_conflict_do_update(
             index_elements=["shape_id", "name"],
@@ -153,6 +157,8 @@ def _upsert_scores(
         ),
         rows,
     )
+    for some in scored:
+        copy_facets(connection, some)
 
 
 def _refuse_foreign_models(connection: Connection, scores: Sequence[NewScore], shapes: Mapping[int, Shape]) -> None:

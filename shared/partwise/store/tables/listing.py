@@ -1,8 +1,13 @@
 """What the table of shapes is filtered and ordered by, kept up to date beside the rows that it follows from."""
 
-from sqlalchemy import Boolean, Column, Double, ForeignKey, Index, Integer, String, Table
+from sqlalchemy import Boolean, Column, Double, ForeignKey, Index, Integer, String, Table, Text
 
 from partwise.store.tables.base import UtcDateTime, metadata
+
+FACETS = ("state", "author_id", "cluster", "failed_stage")
+"""Columns that shapes are filtered by. An index for each order ends in all of them: who walks along the order, past
+however many shapes that a filter leaves out, reads that index and nothing else.
+"""
 
 shape_facet = Table(  # a copy of what `sql.state` derives, renewed in the transaction of whatever changes it
     "shape_facet",
@@ -13,11 +18,13 @@ shape_facet = Table(  # a copy of what `sql.state` derives, renewed in the trans
     Column("author_id", ForeignKey("person.id")),
     Column("failed_stage", String(64)),
     Column("cluster", Integer),
-    Index(None, "collection_id", "shape_id"),
-    Index(None, "collection_id", "state", "shape_id"),
-    Index(None, "collection_id", "author_id", "shape_id"),
-    Index(None, "collection_id", "failed_stage", "shape_id"),
-    Index(None, "collection_id", "cluster", "shape_id"),
+    Column("source_key", Text, nullable=False, server_default=""),
+    Index("ix_shape_facet_by_id", "collection_id", "shape_id", *FACETS),
+    Index("ix_shape_facet_by_name", "collection_id", "source_key", "shape_id", *FACETS),
+    Index("ix_shape_facet_by_state", "collection_id", "state", "shape_id", "author_id", "cluster", "failed_stage"),
+    Index("ix_shape_facet_by_author", "collection_id", "author_id", "shape_id", "state", "cluster", "failed_stage"),
+    Index("ix_shape_facet_by_cluster", "collection_id", "cluster", "shape_id", "state", "author_id", "failed_stage"),
+    Index("ix_shape_facet_by_failure", "collection_id", "failed_stage", "shape_id", "state", "author_id", "cluster"),
 )
 
 head_part = Table(  # parts of the newest shown labels of each shape

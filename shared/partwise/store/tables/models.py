@@ -1,8 +1,9 @@
 """Models, scores, the selection, the embedding."""
 
-from sqlalchemy import JSON, Column, Double, ForeignKey, Index, Integer, String, Table, Text, UniqueConstraint
+from sqlalchemy import JSON, Column, Double, ForeignKey, Index, Integer, String, Table, Text, UniqueConstraint, text
 
 from partwise.store.tables.base import UtcDateTime, metadata
+from partwise.store.tables.listing import FACETS, shape_facet
 
 model = Table(
     "model",
@@ -19,6 +20,7 @@ model = Table(
 )
 
 score = Table(  # the latest of each name only: history of every shape under every model would outgrow the rest
+    # its shape's facets stand beside it, so that an order by score is walked along without a look at any shape
     "score",
     metadata,
     Column("shape_id", ForeignKey("shape.id"), primary_key=True),
@@ -27,9 +29,19 @@ score = Table(  # the latest of each name only: history of every shape under eve
     Column("value", Double, nullable=False),
     Column("scored_at", UtcDateTime, nullable=False),
     Column("collection_id", ForeignKey("collection.id"), nullable=False),
-    Index(None, "collection_id", "name", "value", "shape_id"),
+    *(Column(facet.name, facet.type) for facet in (shape_facet.c[name] for name in FACETS)),
+    Index("ix_score_by_value", "collection_id", "name", "value", "shape_id", *FACETS),
     Index(None, "collection_id", "name", "model_id"),
 )
+
+_OF_NAME = (score.c.collection_id, score.c.name)
+_PLACE = (score.c.value, score.c.shape_id)
+Index("ix_score_by_state", *_OF_NAME, score.c.state, *_PLACE, score.c.author_id, score.c.cluster)
+Index("ix_score_by_cluster", *_OF_NAME, score.c.cluster, *_PLACE, score.c.state, score.c.author_id)
+for _name, _facet in (("author", score.c.author_id), ("failure", score.c.failed_stage)):  # of the few that have one
+    _has_one = text(f"{_facet.name} IS NOT NULL")
+    _of_facet = (*_OF_NAME, _facet, *_PLACE, score.c.state, score.c.cluster)
+    Index(f"ix_score_by_{_name}", *_of_facet, sqlite_where=_has_one, postgresql_where=_has_one)
 
 score_tally = Table(  # how the scores were that a model gave, which newer models' take the place of
     "score_tally",
