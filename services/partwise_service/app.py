@@ -16,6 +16,7 @@ from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
 from partwise_service.page import install_page
 from partwise_service.problems import install_problems
+from partwise_service.remembered import Remembered
 from partwise_service.routes import (
     accepts,
     arrays,
@@ -28,6 +29,7 @@ from partwise_service.routes import (
     figures,
     jobs,
     leases,
+    operations,
     parts,
     people,
     queue,
@@ -55,6 +57,7 @@ ROUTERS: Sequence[APIRouter] = (
     accepts.router,
     checks.router,
     figures.router,
+    operations.router,
     people.router,
     queue.router,
     leases.router,
@@ -69,6 +72,8 @@ ROUTERS: Sequence[APIRouter] = (
 """Every resource of the API, in the order of the document. A route file is served once its router is in here."""
 UPLOAD_PATH = re.compile(rf"{API_V1}/collections/[0-9]+/uploads")
 """Paths whose requests may be as large as `max_upload_bytes`."""
+OPS_S = 10.0
+"""Seconds for which figures of operation are kept: some are counted over all shapes."""
 _METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
 _REQUEST_HEADERS = ("Authorization", "Content-Type", "If-None-Match", "Last-Event-ID")
 
@@ -87,7 +92,9 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
             limiter = FailureLimiter(settings.max_auth_failures, settings.auth_window_s, clock)
             pool = ToolPool(workspace.array_url, _pool_limits(settings))
             resources.callback(pool.close)
-            app.state.service = Service(settings, workspace, limiter, RecentlyGood(), EmbeddingMaps(), pool)
+            app.state.service = Service(
+                settings, workspace, limiter, RecentlyGood(), EmbeddingMaps(), pool, Remembered(OPS_S, clock)
+            )
             yield
 
     app = FastAPI(

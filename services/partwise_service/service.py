@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from partwise.workspace.workspace import Workspace
 from partwise_service.maps import EmbeddingMaps
+from partwise_service.remembered import Remembered
+from partwise_service.schemas.operations import OpsOut
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.settings import ServiceSettings
@@ -20,3 +22,4 @@ class Service:
     recent: RecentlyGood
     maps: EmbeddingMaps
     tools: ToolPool
+    ops: Remembered[OpsOut]

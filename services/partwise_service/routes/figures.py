@@ -1,27 +1,16 @@
-"""/collections/{collection_id}/models, /embedding, /ops: what the machine made, and how it is doing."""
+"""/collections/{collection_id}/models, /embedding: what the machine made."""
 
-from datetime import UTC, datetime, timedelta
 from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query
 
 from partwise.workspace.embedding_map import embedding_key
-from partwise.workspace.status import STAGE_ORDER
-from partwise_service.dependencies import CatalogDep, Operator, ScopedCollection, ServiceDep
+from partwise_service.dependencies import CatalogDep, ScopedCollection, ServiceDep
 from partwise_service.schemas.base import MAX_ROW_ID
-from partwise_service.schemas.figures import (
-    EmbeddingPage,
-    ModelOut,
-    ModelsOut,
-    OpsOut,
-    QueueFigures,
-    StageFigures,
-)
+from partwise_service.schemas.figures import EmbeddingPage, ModelOut, ModelsOut
 
 MAX_POINTS = 20_000
-MAX_REVIEWS = 1_000
-WINDOW = timedelta(minutes=15)
 router = APIRouter(prefix="/collections/{collection_id}", tags=["figures"])
 
 
@@ -57,30 +46,3 @@ def show_embedding(
         first_shape_ids=[shape_id for shape_id in ids if shape_id in first_ids],
         next=str(ids[-1]) if start + limit < len(drawn.shape_ids) else None,
     )
-
-
-@router.get("/ops")
-def show_ops(_caller: Operator, collection: ScopedCollection, catalog: CatalogDep) -> OpsOut:
-    """How the collection is doing: shapes by state, stages and their pace, failures, the queue."""
-    pace = catalog.stage_paces(collection.id, datetime.now(UTC) - WINDOW)
-    window_min = WINDOW.total_seconds() / 60
-    stages = [
-        StageFigures(
-            stage=each.stage, done=each.n_done, failed=each.n_failed, per_min=pace.get(each.stage, 0) / window_min
-        )
-        for each in sorted(catalog.stage_counts(collection.id), key=lambda each: _position(each.stage))
-    ]
-    depth, model = catalog.queue_depth(collection.id), catalog.latest_model(collection.id)
-    return OpsOut(
-        states=dict(catalog.state_counts(collection.id)),
-        stages=stages,
-        window_min=window_min,
-        failures=dict(catalog.failure_kinds(collection.id)),
-        queue=QueueFigures(free=depth.n_free, held=depth.n_held, assigned=depth.n_assigned, oldest_at=depth.oldest_at),
-        model_version=None if model is None else model.version,
-        open_reviews=len(catalog.open_reviews(collection.id, limit=MAX_REVIEWS)),
-    )
-
-
-def _position(stage: str) -> int:
-    return STAGE_ORDER.index(stage) if stage in STAGE_ORDER else len(STAGE_ORDER)

@@ -1,10 +1,10 @@
-"""Models, the embedding's map, and how a collection is doing."""
+"""Models and the embedding's map."""
 
 from datetime import datetime
 
 from pydantic import JsonValue
 
-from partwise.store.records import FailureKind, Model, ShapeState
+from partwise.store.records import Model, ShapeState
 from partwise_service.schemas.base import Answer
 
 
@@ -46,33 +46,3 @@ class EmbeddingPage(Answer):
     states: list[ShapeState]
     first_shape_ids: list[int]
     next: str | None
-
-
-class StageFigures(Answer):
-    """done, failed : shapes with a present result, and shapes given up. per_min : done a minute, over `window_min`."""
-
-    stage: str
-    done: int
-    failed: int
-    per_min: float
-
-
-class QueueFigures(Answer):
-    """free, held : labels that wait for a person, and that one is at. oldest_at : since when the oldest waits."""
-
-    free: int
-    held: int
-    assigned: int
-    oldest_at: datetime | None
-
-
-class OpsOut(Answer):
-    """states : shapes by state. failures : failed runs by kind. open_reviews : counted up to 1,000."""
-
-    states: dict[ShapeState, int]
-    stages: list[StageFigures]
-    window_min: float
-    failures: dict[FailureKind, int]
-    queue: QueueFigures
-    model_version: int | None
-    open_reviews: int

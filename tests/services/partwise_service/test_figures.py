@@ -1,10 +1,10 @@
-"""Models, the embedding's map and the figures of operation."""
+"""Models and the embedding's map."""
 
 import numpy as np
 import pytest
 from safetensors.numpy import save
 
-from partwise.store.records import FirstShape, NewFailure
+from partwise.store.records import FirstShape
 
 
 @pytest.fixture
@@ -61,18 +61,3 @@ def test_a_new_embedding_is_a_new_map(annotator, workspace, mugs, embedded) -> N
     after = annotator.get(_path(mugs, "embedding")).json()
     assert (after["x"], after["y"]) == ([7], [0])
     assert after["embedding"] != before["embedding"]
-
-
-def test_the_figures_of_operation(operator, workspace, mugs) -> None:
-    workspace.catalog.record_failure(
-        NewFailure(mugs.ids["a.off"], "remesh", "k9", "too large", detail={"kind": "memory"})
-    )
-    shown = operator.get(_path(mugs, "ops")).json()
-    assert shown["states"]["ready"] == 3
-    assert [stage["stage"] for stage in shown["stages"]] == ["mesh", "remesh", "describe", "evaluate", "refine"]
-    assert shown["stages"][0] == {"stage": "mesh", "done": 3, "failed": 0, "per_min": 3 / shown["window_min"]}
-    assert (shown["failures"]["memory"], shown["model_version"], shown["open_reviews"]) == (1, 1, 0)
-
-
-def test_the_figures_of_operation_are_for_operators(reviewer, mugs) -> None:
-    assert reviewer.get(_path(mugs, "ops")).status_code == 403

@@ -11,6 +11,7 @@ from partwise.store.catalog.accepts import AcceptCatalog
 from partwise.store.catalog.collections import AuditCatalog, CollectionCatalog
 from partwise.store.catalog.drafts import DraftCatalog
 from partwise.store.catalog.events import EventCatalog
+from partwise.store.catalog.figures import FigureCatalog
 from partwise.store.catalog.jobs import JobCatalog
 from partwise.store.catalog.labels import SHOWN_KINDS, LabelCatalog
 from partwise.store.catalog.listing import ListingCatalog
@@ -28,6 +29,7 @@ __all__ = [
     "CollectionCatalog",
     "DraftCatalog",
     "EventCatalog",
+    "FigureCatalog",
     "JobCatalog",
     "LabelCatalog",
     "ListingCatalog",
@@ -52,6 +54,7 @@ class Catalog(
     EventCatalog,
     ListingCatalog,
     AcceptCatalog,
+    FigureCatalog,
     AuditCatalog,
     Protocol,
 ):

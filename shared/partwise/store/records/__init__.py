@@ -18,6 +18,7 @@ from partwise.store.records.confirmations import (
 )
 from partwise.store.records.drafts import Draft, DraftOutcome, NewDraft, StoredStroke
 from partwise.store.records.events import Event, EventBounds, EventKind, NewEvent
+from partwise.store.records.figures import BlockTotal, LeaseCounts, ModelRound, PersonFigures
 from partwise.store.records.jobs import BACKGROUND_KINDS, COALESCED_KINDS, Job, JobKind, JobState, Progress
 from partwise.store.records.labels import LabelRevision, NewRevision, RevisionKind
 from partwise.store.records.leases import (
@@ -80,6 +81,7 @@ __all__ = [
     "BlindCheck",
     "BlindCheckDay",
     "Block",
+    "BlockTotal",
     "Closeness",
     "Collection",
     "Confirmation",
@@ -103,6 +105,7 @@ __all__ = [
     "JobState",
     "LabelRevision",
     "Lease",
+    "LeaseCounts",
     "LeaseOutcome",
     "LeasePurpose",
     "ListAnchor",
@@ -110,6 +113,7 @@ __all__ = [
     "Mesh",
     "MeshRole",
     "Model",
+    "ModelRound",
     "NewBlindCheck",
     "NewBlock",
     "NewClaim",
@@ -127,6 +131,7 @@ __all__ = [
     "NewToken",
     "Ordering",
     "Person",
+    "PersonFigures",
     "Progress",
     "QueueAnchor",
     "QueueDepth",

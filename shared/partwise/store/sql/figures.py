@@ -1,11 +1,19 @@
-"""How fast stages go and why shapes fail, counted."""
+"""How fast stages go, why shapes fail, who works on what, and what all of it takes, counted."""
 
 from datetime import datetime
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import Connection, case, func, select, text
 
 from partwise.store import tables as t
-from partwise.store.records import FailureKind, RunStatus
+from partwise.store.records import (
+    BlockTotal,
+    DraftOutcome,
+    FailureKind,
+    LeaseCounts,
+    PersonFigures,
+    RunStatus,
+)
+from partwise.store.sql.collections import schema_version
 from partwise.store.sql.state import is_failed_run
 
 
@@ -36,3 +44,89 @@ def failure_kinds(connection: Connection, collection_id: int) -> dict[FailureKin
         known = FailureKind(name) if name in set(FailureKind) else FailureKind.ERROR
         counts[known] += n_runs
     return counts
+
+
+def lease_counts(connection: Connection, collection_id: int, now: datetime) -> LeaseCounts:
+    schema_version(connection, collection_id)
+    lease = t.lease.c
+    query = select(
+        func.count(),
+        func.count(case((lease.is_prefetched, 1))),
+        func.count(case((lease.expires_at < now, 1))),
+        func.count(lease.person_id.distinct()),
+    ).where(lease.collection_id == collection_id, lease.released_at.is_(None))
+    return LeaseCounts(*connection.execute(query).one())
+
+
+def scored_by(connection: Connection, collection_id: int, score_name: str) -> dict[int, int]:
+    schema_version(connection, collection_id)
+    score = t.score.c
+    counts = (
+        select(score.model_id, func.count().label("n_scores"))
+        .where(score.collection_id == collection_id, score.name == score_name)
+        .group_by(score.model_id)
+        .subquery()
+    )
+    query = select(t.model.c.version, counts.c.n_scores).join_from(counts, t.model, t.model.c.id == counts.c.model_id)
+    return {row.version: row.n_scores for row in connection.execute(query.order_by(t.model.c.version))}
+
+
+def block_totals(connection: Connection) -> list[BlockTotal]:
+    block = t.block.c
+    query = select(block.kind, func.count(), func.sum(block.n_bytes)).group_by(block.kind).order_by(block.kind)
+    return [BlockTotal(kind, n_blocks, int(n_bytes)) for kind, n_blocks, n_bytes in connection.execute(query)]
+
+
+def database_bytes(connection: Connection) -> int:
+    if connection.dialect.name == "postgresql":
+        return int(connection.execute(text("SELECT pg_database_size(current_database())")).scalar_one())
+    pages, page_bytes = (
+        connection.execute(text(f"PRAGMA {name}")).scalar_one() for name in ("page_count", "page_size")
+    )
+    return int(pages) * int(page_bytes)
+
+
+def person_figures(connection: Connection, collection_id: int, since: datetime) -> list[PersonFigures]:
+    schema_version(connection, collection_id)
+    draft, check = t.draft.c, t.blind_check.c
+    checks = (
+        select(check.person_id, func.count().label("n_checks"), func.avg(check.area_agreement).label("mean"))
+        .where(check.collection_id == collection_id, check.checked_at >= since)
+        .group_by(check.person_id)
+        .subquery()
+    )
+    done = (
+        select(
+            draft.person_id,
+            func.count().label("n_confirmed"),
+            func.count(draft.active_s).label("n_timed"),
+            func.coalesce(func.sum(draft.active_s), 0.0).label("active_s"),
+            func.coalesce(func.sum(draft.n_clicks), 0).label("n_clicks"),
+            func.max(draft.closed_at).label("last_at"),
+        )
+        # written out: a partial index serves only a query whose text repeats its condition
+        .where(text(f"draft.outcome = '{DraftOutcome.CONFIRMED}'"))
+        .where(draft.collection_id == collection_id, draft.closed_at >= since)
+        .group_by(draft.person_id)
+        .subquery()
+    )
+    query = (
+        select(t.person.c.id, t.person.c.name, done, checks.c.n_checks, checks.c.mean)
+        .join_from(done, t.person, t.person.c.id == done.c.person_id)
+        .join(checks, checks.c.person_id == done.c.person_id, isouter=True)
+        .order_by(t.person.c.name)
+    )
+    return [
+        PersonFigures(
+            row.id,
+            row.name,
+            row.n_confirmed,
+            row.n_timed,
+            float(row.active_s),
+            int(row.n_clicks),
+            row.last_at,
+            row.n_checks or 0,
+            row.mean,
+        )
+        for row in connection.execute(query)
+    ]

@@ -6,6 +6,7 @@ from partwise.store.sql_catalog.base import utc_now as utc_now
 from partwise.store.sql_catalog.collections import SqlCollectionCatalog
 from partwise.store.sql_catalog.drafts import SqlDraftCatalog
 from partwise.store.sql_catalog.events import SqlEventCatalog
+from partwise.store.sql_catalog.figures import SqlFigureCatalog
 from partwise.store.sql_catalog.jobs import SqlJobCatalog
 from partwise.store.sql_catalog.labels import SqlLabelCatalog
 from partwise.store.sql_catalog.listing import SqlListingCatalog
@@ -29,6 +30,7 @@ class SqlCatalog(
     SqlEventCatalog,
     SqlListingCatalog,
     SqlAcceptCatalog,
+    SqlFigureCatalog,
 ):
     """A catalog in a database of the known schema; get one from `partwise.store.open`. Safe to share between threads.
 

@@ -1,0 +1,138 @@
+"""/collections/{collection_id}/ops, /rounds, /ops/people: how a collection is doing."""
+
+import shutil
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from partwise.store.catalog import Catalog
+from partwise.store.records import Job, JobState
+from partwise.workspace.segmentations import DESCRIBE, EVALUATE, REFINE
+from partwise.workspace.status import STAGE_ORDER
+from partwise.workspace.workspace import Workspace
+from partwise_service.dependencies import CatalogDep, Operator, ScopedCollection, ServiceDep, visible_collection
+from partwise_service.schemas.base import MAX_ROW_ID
+from partwise_service.schemas.operations import (
+    BlockFigures,
+    DiskFigures,
+    FreshnessRow,
+    LeaseFigures,
+    OpsOut,
+    PeopleOps,
+    PersonOps,
+    QueueFigures,
+    RoundOut,
+    RoundsOut,
+    StageFigures,
+    WorkerFigures,
+)
+
+MAX_REVIEWS = 1_000
+MAX_WORKERS = 100
+WINDOW = timedelta(minutes=15)
+router = APIRouter(tags=["operations"])
+
+
+@router.get("/collections/{collection_id}/ops")
+def show_ops(_caller: Operator, service: ServiceDep, collection: ScopedCollection) -> OpsOut:
+    """How the collection is doing: stages and their pace, failures, queue and leases, scores, disk, workers."""
+    return service.ops.get(collection.id, lambda: _measured(service.workspace, collection.id))
+
+
+@router.get("/collections/{collection_id}/rounds")
+def list_rounds(_caller: Operator, collection: ScopedCollection, catalog: CatalogDep) -> RoundsOut:
+    """Model by model: what it took, how unsure it was of all shapes that it scored, how right people were meanwhile."""
+    score_name = catalog.ranking_score(collection.id)
+    found = catalog.model_rounds(collection.id, score_name)
+    return RoundsOut(score_name=score_name, items=[RoundOut.of(each) for each in found])
+
+
+@router.get("/ops/people")
+def show_people_at_work(
+    caller: Operator,
+    catalog: CatalogDep,
+    collection: Annotated[int, Query(ge=1, le=MAX_ROW_ID, description="A collection's id.")],
+    days: Annotated[float, Query(gt=0, le=3_660, description="How far back.")] = 30.0,
+) -> PeopleOps:
+    """How much people label, how fast, and how right they are."""
+    found = visible_collection(catalog, caller, collection)
+    since = datetime.now(UTC) - timedelta(days=days)
+    return PeopleOps(days=days, items=[PersonOps.of(each) for each in catalog.person_figures(found.id, since)])
+
+
+def _measured(workspace: Workspace, collection_id: int) -> OpsOut:
+    catalog, now = workspace.catalog, datetime.now(UTC)
+    depth, model = catalog.queue_depth(collection_id), catalog.latest_model(collection_id)
+    leases, score_name = catalog.lease_counts(collection_id), catalog.ranking_score(collection_id)
+    states, blocks = dict(catalog.state_counts(collection_id)), catalog.block_totals()
+    array_bytes = sum(each.n_bytes for each in blocks)
+    running = catalog.jobs(collection_id, state=JobState.RUNNING, limit=MAX_WORKERS)
+    return OpsOut(
+        measured_at=now,
+        states=states,
+        stages=_stages(catalog, collection_id, sum(states.values()), now),
+        window_min=WINDOW.total_seconds() / 60,
+        failures=dict(catalog.failure_kinds(collection_id)),
+        queue=QueueFigures(free=depth.n_free, held=depth.n_held, assigned=depth.n_assigned, oldest_at=depth.oldest_at),
+        leases=LeaseFigures(
+            held=leases.n_active, prefetched=leases.n_prefetched, expired=leases.n_expired, people=leases.n_people
+        ),
+        model_version=None if model is None else model.version,
+        score_name=score_name,
+        freshness=_freshness(catalog, collection_id, score_name),
+        open_reviews=len(catalog.open_reviews(collection_id, limit=MAX_REVIEWS)),
+        blocks=[BlockFigures(kind=each.kind, blocks=each.n_blocks, bytes=each.n_bytes) for each in blocks],
+        disk=DiskFigures(
+            database_bytes=catalog.database_bytes(), array_bytes=array_bytes, free_bytes=_free_bytes(workspace)
+        ),
+        workers=[_worker(job, now) for job in running],
+    )
+
+
+def _stages(catalog: Catalog, collection_id: int, n_shapes: int, now: datetime) -> list[StageFigures]:
+    counts = {each.stage: each for each in catalog.stage_counts(collection_id)}
+    paces = catalog.stage_paces(collection_id, now - WINDOW)
+    described = counts[DESCRIBE].n_done if DESCRIBE in counts else 0
+    made = []
+    for each in sorted(counts.values(), key=lambda each: _position(each.stage)):
+        n_wanting = described if each.stage in (EVALUATE, REFINE) else n_shapes
+        remaining = max(0, n_wanting - each.n_done - each.n_failed)
+        per_min = paces.get(each.stage, 0) / (WINDOW.total_seconds() / 60)
+        eta_s = 0.0 if not remaining else (60 * remaining / per_min if per_min else None)
+        figures = {"done": each.n_done, "failed": each.n_failed, "remaining": remaining}
+        made.append(StageFigures(stage=each.stage, **figures, per_min=per_min, eta_s=eta_s))
+    return made
+
+
+def _freshness(catalog: Catalog, collection_id: int, score_name: str) -> list[FreshnessRow]:
+    counts = catalog.scored_by(collection_id, score_name)
+    n_scored = sum(counts.values())
+    return [
+        FreshnessRow(model_version=version, shapes=counts[version], share=counts[version] / n_scored)
+        for version in sorted(counts, reverse=True)
+    ]
+
+
+def _worker(job: Job, now: datetime) -> WorkerFigures:
+    silent_s = None if job.heartbeat_at is None else max(0.0, (now - job.heartbeat_at).total_seconds())
+    return WorkerFigures(
+        owner=job.owner or "",
+        job_id=job.id,
+        job_kind=job.kind,
+        heartbeat_at=job.heartbeat_at,
+        silent_s=silent_s,
+        done=job.progress.n_done,
+        total=job.progress.n_total,
+    )
+
+
+def _free_bytes(workspace: Workspace) -> int | None:
+    """Where the array store is a folder of this machine."""
+    folder = Path(workspace.array_url.removeprefix("file://"))
+    return shutil.disk_usage(folder).free if folder.is_dir() else None
+
+
+def _position(stage: str) -> int:
+    return STAGE_ORDER.index(stage) if stage in STAGE_ORDER else len(STAGE_ORDER)

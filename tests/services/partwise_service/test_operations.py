@@ -1,0 +1,165 @@
+"""How a collection is doing: for operators."""
+
+import numpy as np
+import pytest
+
+from partwise.labels.annotation_cost import AnnotationCost
+from partwise.store.records import (
+    Closeness,
+    JobKind,
+    NewBlindCheck,
+    NewClaim,
+    NewConfirmation,
+    NewFailure,
+    NewRevision,
+    Progress,
+    RevisionKind,
+    Role,
+)
+from partwise.testing.workspaces import publish_evaluation, save_model
+from partwise.workspace.confirming import begin_draft
+
+
+@pytest.fixture
+def ops(operator, mugs):
+    """The figures as they are told."""
+    return lambda: operator.get(f"/collections/{mugs.collection_id}/ops").json()
+
+
+@pytest.fixture
+def confirmed(annotator, workspace, mugs):
+    """ann labels the next shape, which took her so long: `confirmed(20.0)`; by its draw, unknowing or not."""
+    catalog = workspace.catalog
+    ann = catalog.get_person("ann").id
+
+    def done(active_s: float, draw: float = 0.9, check: NewBlindCheck | None = None) -> int:
+        lease = catalog.claim_next(NewClaim(mugs.collection_id, ann, 60, draw))
+        draft = begin_draft(workspace, lease)
+        n_faces = catalog.mesh(draft.shape_id, draft.mesh_hash).n_faces
+        cost = AnnotationCost(strokes=6, commands=0, undos=0, redos=0, active_s=active_s, n_idle_gaps=0)
+        labels = np.ones(n_faces, dtype=np.uint16)
+        catalog.confirm_draft(NewConfirmation(draft.id, ann, 0, labels, 1, blind_check=check, cost=cost))
+        return lease.shape_id
+
+    return done
+
+
+@pytest.fixture
+def reference_id(workspace, mugs) -> int:
+    """Truth of a.off; every claim by a low draw gets it."""
+    catalog, mesh = workspace.catalog, mugs.meshes["a.off"]
+    catalog.update_collection_settings(mugs.collection_id, {"honeypot_share": 0.5})
+    truth, labels = catalog.add_person("truth").id, np.ones(mesh.n_faces, dtype=np.uint16)
+    new = NewRevision(mugs.ids["a.off"], mesh.content_hash(), RevisionKind.REFERENCE, truth, 1, labels)
+    return catalog.add_revision(new).id
+
+
+def test_states_and_failures(workspace, mugs, ops) -> None:
+    failure = NewFailure(mugs.ids["a.off"], "remesh", "k9", "too large", detail={"kind": "memory"})
+    workspace.catalog.record_failure(failure)
+    shown = ops()
+    assert shown["states"]["ready"] == 3
+    assert (shown["failures"]["memory"], shown["model_version"], shown["open_reviews"]) == (1, 1, 0)
+
+
+def test_stages_say_how_long_they_take_yet(workspace, mugs, ops) -> None:
+    workspace.catalog.record_failure(NewFailure(mugs.ids["a.off"], "remesh", "k9", "why"))
+    workspace.catalog.supersede_block(
+        workspace.catalog.stage_runs([mugs.ids["a.off"]], "refine")[mugs.ids["a.off"]].block_name
+    )
+    stages = {stage["stage"]: stage for stage in ops()["stages"]}
+    assert list(stages) == ["mesh", "remesh", "describe", "evaluate", "refine"]
+    done = {"stage": "mesh", "done": 3, "failed": 0, "remaining": 0, "per_min": 0.2, "eta_s": 0}
+    assert stages["mesh"] == done
+    assert (stages["remesh"]["remaining"], stages["remesh"]["eta_s"]) == (2, None)
+    assert (stages["refine"]["done"], stages["refine"]["remaining"]) == (0, 3)
+    assert stages["refine"]["eta_s"] == pytest.approx(3 / 0.2 * 60)
+
+
+def test_leases_are_counted(annotator, workspace, mugs, ops) -> None:
+    annotator.post("/queue/claim", json={"collection_id": mugs.collection_id})
+    annotator.post("/queue/claim", json={"collection_id": mugs.collection_id, "is_prefetch": True})
+    workspace.catalog.claim_shape(mugs.ids["sub/c.off"], workspace.catalog.add_person("ben").id, 1e-6)
+    assert ops()["leases"] == {"held": 3, "prefetched": 1, "expired": 1, "people": 2}
+
+
+def test_scores_say_which_model_they_are_of(workspace, mugs, ops) -> None:
+    collection = workspace.catalog.get_collection("mugs")
+    second = save_model(workspace, collection)
+    probabilities = {mugs.ids["a.off"]: np.tile([0.5, 0.5], (mugs.meshes["a.off"].n_faces, 1))}
+    publish_evaluation(workspace, second, (1, 2), probabilities)
+    shown = ops()
+    assert shown["score_name"] == "entropy"
+    rows = [(row["model_version"], row["shapes"]) for row in shown["freshness"]]
+    assert rows == [(2, 1), (1, 2)]
+    assert sum(row["share"] for row in shown["freshness"]) == pytest.approx(1)
+
+
+def test_what_the_workspace_takes(ops) -> None:
+    shown = ops()
+    assert shown["disk"]["database_bytes"] > 0
+    assert shown["disk"]["array_bytes"] == sum(block["bytes"] for block in shown["blocks"]) > 0
+    assert shown["disk"]["free_bytes"] > 0
+    assert {"mesh", "features"} <= {block["kind"] for block in shown["blocks"]}
+
+
+def test_workers_show_by_their_jobs(workspace, mugs, ops) -> None:
+    job = workspace.catalog.enqueue_job(mugs.collection_id, JobKind.EVALUATE)
+    workspace.catalog.claim_job("node-7")
+    workspace.catalog.heartbeat_job(job.id, "node-7", Progress(2, 0, 3, ""))
+    (worker,) = ops()["workers"]
+    assert (worker["owner"], worker["job_kind"], worker["done"], worker["total"]) == ("node-7", "evaluate", 2, 3)
+    assert worker["silent_s"] >= 0
+
+
+def test_figures_are_kept_for_some_seconds(workspace, mugs, clock, ops) -> None:
+    before = ops()
+    workspace.catalog.record_failure(NewFailure(mugs.ids["a.off"], "remesh", "k9", "why"))
+    assert ops() == before
+    clock.now_s += 60
+    assert ops()["failures"] != before["failures"]
+
+
+def test_people_at_work(operator, mugs, confirmed) -> None:
+    for active_s in (20.0, 40.0):
+        confirmed(active_s)
+    (ann,) = operator.get("/ops/people", params={"collection": mugs.collection_id}).json()["items"]
+    assert (ann["name"], ann["labels"], ann["seconds_per_shape"], ann["clicks_per_shape"]) == ("ann", 2, 30, 6)
+    assert (ann["labels_per_h"], ann["blind_accuracy"]) == (120, None)
+
+
+def test_people_who_confirmed_nothing_lately_are_left_out(operator, mugs, confirmed) -> None:
+    confirmed(20.0)
+    query = {"collection": mugs.collection_id, "days": 1e-9}
+    assert operator.get("/ops/people", params=query).json()["items"] == []
+
+
+def test_people_of_another_collection_are_not_there(issue, mugs) -> None:
+    stranger = issue("sam", Role.OPERATOR, (mugs.other_id,))
+    assert stranger.get("/ops/people", params={"collection": mugs.collection_id}).status_code == 404
+
+
+def test_rounds_go_from_model_to_model(operator, workspace, mugs, confirmed, reference_id) -> None:
+    confirmed(5.0, 0.1, NewBlindCheck(reference_id, Closeness(0.8, 0.7, 0.1)))
+    save_model(workspace, workspace.catalog.get_collection("mugs"))
+    found = operator.get(f"/collections/{mugs.collection_id}/rounds").json()
+    newest, first = found["items"]
+    assert (newest["model_version"], newest["n_scored"], newest["mean_score"], newest["n_checks"]) == (2, 0, None, 0)
+    assert (first["model_version"], first["n_scored"], first["n_checks"], first["blind_accuracy"]) == (1, 3, 1, 0.8)
+    assert first["mean_score"] > 0
+
+
+def test_a_round_keeps_its_mean_when_a_newer_model_scores(operator, workspace, mugs) -> None:
+    path = f"/collections/{mugs.collection_id}/rounds"
+    before = operator.get(path).json()["items"][0]
+    second = save_model(workspace, workspace.catalog.get_collection("mugs"))
+    probabilities = {mugs.ids["a.off"]: np.tile([0.5, 0.5], (mugs.meshes["a.off"].n_faces, 1))}
+    publish_evaluation(workspace, second, (1, 2), probabilities)
+    newest, first = operator.get(path).json()["items"]
+    assert first == before
+    assert newest["mean_score"] == pytest.approx(np.log(2), rel=1e-3)
+
+
+@pytest.mark.parametrize("path", ["/collections/{id}/ops", "/collections/{id}/rounds", "/ops/people?collection={id}"])
+def test_figures_of_operation_are_for_operators(reviewer, mugs, path) -> None:
+    assert reviewer.get(path.format(id=mugs.collection_id)).status_code == 403
