@@ -24,8 +24,8 @@ export function Panel({ title, actions, description, children, isFlush = false, 
           {title}
         </h2>
         {actions !== undefined && <div className={styles.actions}>{actions}</div>}
-        {description !== undefined && <p className={styles.description}>{description}</p>}
       </header>
+      {description !== undefined && <p className={styles.description}>{description}</p>}
       <div className={isFlush ? styles.flush : styles.body}>{children}</div>
     </section>
   );

@@ -1,25 +1,23 @@
-import { useEffect, useRef } from "react";
+import { useRef } from "react";
 import styles from "./Chart.module.css";
-import { type ChartData, LineChart } from "./LineChart";
+import type { ChartData } from "./chartData";
 import { DASHES, N_SERIES_COLOURS } from "./seriesColours";
+import { useLineChart } from "./useLineChart";
 
 /** Lines over time or rounds, with a legend that says the latest values: all that a chart tells is there in words. */
 export function Chart({ label, data, wait }: { label: string; data: ChartData; wait: string }) {
   const place = useRef<HTMLDivElement>(null);
-  const chart = useRef<LineChart | null>(null);
-  useEffect(() => {
-    if (!place.current) return undefined;
-    const made = new LineChart(place.current);
-    chart.current = made;
-    made.connect();
-    return () => made.disconnect();
-  }, []);
-  useEffect(() => chart.current?.show(data), [data]);
+  const isRefused = useLineChart(place, data);
+  const note = isRefused
+    ? "This browser cannot draw the chart; the figures are below."
+    : data.x.length < 2
+      ? wait
+      : null;
   return (
     <figure className={styles.chart} aria-label={label}>
       <div className={styles.plot}>
         <div ref={place} aria-hidden="true" />
-        {data.x.length < 2 && <p className={styles.wait}>{wait}</p>}
+        {note !== null && <p className={styles.wait}>{note}</p>}
       </div>
       <figcaption>
         <ul className={styles.legend}>

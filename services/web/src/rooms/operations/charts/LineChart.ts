@@ -1,24 +1,11 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
+import type { ChartData } from "./chartData";
 import { DASHES, N_SERIES_COLOURS, resolvedColour } from "./seriesColours";
 
-export interface ChartLine {
-  name: string;
-  /** A value for each x; null where there is none. */
-  values: readonly (number | null)[];
-}
-
-export interface ChartData {
-  /** Seconds since 1970 for times, else plain numbers. */
-  x: readonly number[];
-  lines: readonly ChartLine[];
-  /** The largest y that is always in sight, such as 1 for shares. */
-  top?: number;
-  isTime: boolean;
-  format: (value: number) => string;
-}
-
 const HEIGHT_PX = 168;
+/** One point makes no line, and no sensible axis. */
+const MIN_POINTS = 2;
 const Y_AXIS_PX = 52;
 
 /** A chart in an element: made when it is connected, drawn anew when its data, its width or the scheme changes. */
@@ -60,7 +47,8 @@ export class LineChart {
 
   private build(): void {
     this.plot?.destroy();
-    if (!this.data) return;
+    this.plot = undefined;
+    if (!this.data || this.data.x.length < MIN_POINTS) return;
     this.plot = new uPlot(this.options(this.data), alignedData(this.data), this.element);
   }
 
@@ -97,7 +85,7 @@ export class LineChart {
           stroke: colour(`--series-${(index % N_SERIES_COLOURS) + 1}`),
           width: 2,
           dash: [...(DASHES[index % DASHES.length] ?? [])],
-          points: { show: line.values.length === 1 || !data.isTime, size: 6 },
+          points: { show: !data.isTime, size: 6 },
           spanGaps: true,
         })),
       ],

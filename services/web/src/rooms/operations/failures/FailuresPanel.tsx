@@ -103,10 +103,11 @@ function present({ kind, stage }: FailureFilter) {
 
 function Kinds({ ops }: { ops: Ops }) {
   const kinds = Object.entries(ops.failures) as [FailureKind, number][];
-  if (kinds.length === 0) return null;
+  const seen = kinds.filter(([, n]) => n > 0);
+  if (seen.length === 0) return null;
   return (
     <ul className={styles.kinds} aria-label="Failures by kind">
-      {kinds.map(([kind, n]) => (
+      {seen.map(([kind, n]) => (
         <li key={kind}>
           <strong>{count(n, "failure")}</strong> · {FAILURE_WORDS[kind].name}
           <span className={styles.advice}> {FAILURE_WORDS[kind].advice}</span>

@@ -39,12 +39,11 @@ export function failureColumns({ rows, chosen, choose, onShow }: FailureColumns)
     },
     { id: "shape", header: "Shape", cell: ({ source_key }) => <Name text={source_key} /> },
     { id: "stage", header: "Stage", cell: ({ stage }) => stageName(stage) },
-    { id: "kind", header: "Kind", cell: ({ kind }) => FAILURE_WORDS[kind].name },
     {
       id: "reason",
       header: "Reason",
       isWide: true,
-      cell: ({ message }) => <span title={message}>{message}</span>,
+      cell: ({ kind, message }) => <Reason kind={kind} message={message} />,
     },
     { id: "attempts", header: "Tries", isNumber: true, cell: ({ attempts }) => whole(attempts) },
     { id: "at", header: "Gave up", cell: ({ at }) => <Time at={at} /> },
@@ -58,6 +57,14 @@ export function failureColumns({ rows, chosen, choose, onShow }: FailureColumns)
       ),
     },
   ];
+}
+
+function Reason({ kind, message }: Pick<Failure, "kind" | "message">) {
+  return (
+    <span title={message}>
+      <strong>{FAILURE_WORDS[kind].name}:</strong> {message}
+    </span>
+  );
 }
 
 const LONG_NAME = 28;

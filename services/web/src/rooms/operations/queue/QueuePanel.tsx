@@ -2,7 +2,7 @@ import { useMemo } from "react";
 import { Panel, Skeleton } from "../../../components";
 import { whole } from "../../../components/numbers";
 import { Chart } from "../charts/Chart";
-import type { ChartData } from "../charts/LineChart";
+import type { ChartData } from "../charts/chartData";
 import type { Sample } from "../history";
 import type { Ops } from "../queries";
 

@@ -3,14 +3,14 @@ import { type Column, DataTable, Panel, Progress, Skeleton } from "../../../comp
 import { decimal, whole } from "../../../components/numbers";
 import { durationInWords } from "../../../components/timeInWords";
 import { Chart } from "../charts/Chart";
-import type { ChartData } from "../charts/LineChart";
+import type { ChartData } from "../charts/chartData";
 import type { Sample } from "../history";
 import type { Ops } from "../queries";
 import { stageMeaning, stageName } from "../stageWords";
-import { etaInSeconds } from "./eta";
+import { etaInSeconds, shapesBefore } from "./eta";
 import styles from "./StagesPanel.module.css";
 
-type Stage = Ops["stages"][number];
+type Stage = Ops["stages"][number] & { nReaching: number };
 
 interface StagesPanelProps {
   ops: Ops | undefined;
@@ -21,6 +21,11 @@ interface StagesPanelProps {
 /** Each stage's progress, pace and end, and how the pace went. */
 export function StagesPanel({ ops, history, className }: StagesPanelProps) {
   const nShapes = Object.values(ops?.states ?? {}).reduce((total, n) => total + n, 0);
+  const reaching = shapesBefore(ops?.stages ?? [], nShapes);
+  const stages = (ops?.stages ?? []).map((stage, index) => ({
+    ...stage,
+    nReaching: reaching[index] ?? nShapes,
+  }));
   const chart = useMemo(() => paceChart(ops, history), [ops, history]);
   return (
     <Panel
@@ -33,8 +38,8 @@ export function StagesPanel({ ops, history, className }: StagesPanelProps) {
         <div className={styles.halves}>
           <DataTable
             caption="Stages"
-            columns={columnsOf(nShapes)}
-            rows={ops.stages}
+            columns={COLUMNS}
+            rows={stages}
             keyOf={(stage) => stage.stage}
             empty="Nothing has run yet. Add files in the settings; stages begin by themselves."
           />
@@ -53,40 +58,41 @@ export function StagesPanel({ ops, history, className }: StagesPanelProps) {
   );
 }
 
-function columnsOf(nShapes: number): readonly Column<Stage>[] {
-  const left = ({ done, failed }: Stage) => Math.max(0, nShapes - done - failed);
-  return [
-    {
-      id: "stage",
-      header: "Stage",
-      cell: ({ stage }) => <span title={stageMeaning(stage)}>{stageName(stage)}</span>,
+const left = ({ done, failed, nReaching }: Stage) => Math.max(0, nReaching - done - failed);
+
+const COLUMNS: readonly Column<Stage>[] = [
+  {
+    id: "stage",
+    header: "Stage",
+    cell: ({ stage }) => <span title={stageMeaning(stage)}>{stageName(stage)}</span>,
+  },
+  {
+    id: "progress",
+    header: "Progress",
+    isWide: true,
+    cell: ({ stage, done, nReaching }) => (
+      <Progress label={`${stageName(stage)}, done`} value={done} max={nReaching} />
+    ),
+  },
+  { id: "done", header: "Done", isNumber: true, cell: ({ done }) => whole(done) },
+  {
+    id: "failed",
+    header: "Failed",
+    isNumber: true,
+    cell: ({ failed }) => <span className={failed > 0 ? styles.failed : undefined}>{whole(failed)}</span>,
+  },
+  { id: "pace", header: "A minute", isNumber: true, cell: ({ per_min }) => decimal(per_min) },
+  {
+    id: "eta",
+    header: "Time left",
+    isNumber: true,
+    cell: (stage) => {
+      if (left(stage) === 0) return "done";
+      const seconds = etaInSeconds(left(stage), stage.per_min);
+      return seconds === null ? <span title="Nothing was done lately.">–</span> : durationInWords(seconds);
     },
-    {
-      id: "progress",
-      header: "Progress",
-      isWide: true,
-      cell: ({ stage, done }) => <Progress label={`${stageName(stage)}, done`} value={done} max={nShapes} />,
-    },
-    { id: "done", header: "Done", isNumber: true, cell: ({ done }) => whole(done) },
-    {
-      id: "failed",
-      header: "Failed",
-      isNumber: true,
-      cell: ({ failed }) => <span className={failed > 0 ? styles.failed : undefined}>{whole(failed)}</span>,
-    },
-    { id: "pace", header: "A minute", isNumber: true, cell: ({ per_min }) => decimal(per_min) },
-    {
-      id: "eta",
-      header: "Time left",
-      isNumber: true,
-      cell: (stage) => {
-        if (left(stage) === 0) return "done";
-        const seconds = etaInSeconds(left(stage), stage.per_min);
-        return seconds === null ? <span title="Nothing was done lately.">–</span> : durationInWords(seconds);
-      },
-    },
-  ];
-}
+  },
+];
 
 function paceChart(ops: Ops | undefined, history: readonly Sample[]): ChartData {
   return {

@@ -5,16 +5,16 @@ import { useLocation } from "wouter";
 import { api, body } from "../../../api/client";
 import { collectionsQuery } from "../../../api/queries";
 import { roomAddress } from "../../../app/rooms";
-import { Button, Dialog, Field, Input } from "../../../components";
+import { Button, type ButtonVariant, Dialog, Field, Input } from "../../../components";
 import styles from "./NewCollection.module.css";
 import { partNamesOf } from "./partNames";
 
 /** A button that makes a collection with its first parts, and opens its settings, where files are added. */
-export function NewCollection() {
+export function NewCollection({ variant = "primary" }: { variant?: ButtonVariant }) {
   const [isOpen, setOpen] = useState(false);
   return (
     <>
-      <Button variant="primary" icon={<Plus />} onClick={() => setOpen(true)}>
+      <Button variant={variant} icon={<Plus />} onClick={() => setOpen(true)}>
         New collection
       </Button>
       {isOpen && <NewCollectionDialog onClose={() => setOpen(false)} />}
