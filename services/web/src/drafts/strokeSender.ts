@@ -49,6 +49,10 @@ export class StrokeSender {
     this.backoff = new Backoff(parts.clock);
   }
 
+  get outbox(): Outbox {
+    return this.parts.outbox;
+  }
+
   /** All strokes, on record or not, in order. */
   get strokes(): readonly StrokeJson[] {
     return this.log;

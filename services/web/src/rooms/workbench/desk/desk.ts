@@ -166,7 +166,8 @@ export class Desk {
 
   private loaded(leased: Renewed<Lease>, isNamed: boolean, since: number): HeldShape {
     const shape = new HeldShape(this.parts, leased, isNamed);
-    shape.load(this.opening(), since);
+    if (this.isClosed) void shape.close();
+    else shape.load(this.opening(), since);
     return shape;
   }
 

@@ -82,6 +82,7 @@ export class HeldShape {
 
   /** Work begins: opens the draft, where it was left. */
   async begin(opening: Opening): Promise<void> {
+    if (this.isClosed) return;
     this.load(opening, performance.now());
     try {
       if (this.lease.is_prefetched) await this.keeper.renew(false);
@@ -95,6 +96,12 @@ export class HeldShape {
     } catch (error) {
       this.state.set({ step: "failed", why: error instanceof Error ? error.message : String(error) });
     }
+  }
+
+  /** After `begin` failed. */
+  retry(opening: Opening): Promise<void> {
+    this.state.set({ step: "mesh" });
+    return this.begin(opening);
   }
 
   async close(): Promise<void> {

@@ -1,0 +1,84 @@
+import type { ReactNode } from "react";
+import { Button, Notice } from "../../../components";
+import { count } from "../../../components/numbers";
+import { useObservable } from "../../../drafts/useObservable";
+import type { HeldShape } from "../desk/heldShape";
+import type { OpenShape } from "../shape/openShape";
+import { ConflictBar } from "./ConflictBar";
+import { SetAsideBar } from "./SetAsideBar";
+
+export interface ShapeBannersProps {
+  held: HeldShape;
+  open: OpenShape;
+  onLeave: () => void;
+}
+
+/** What the person must know about the shape in hand before they go on. */
+export function ShapeBanners({ held, open, onLeave }: ShapeBannersProps) {
+  const lease = useObservable(held.keeper.state);
+  const role = useObservable(open.draft.right.role);
+  const isConfirmedElsewhere = useObservable(open.draft.isConfirmedElsewhere);
+  const save = useObservable(open.draft.sender.state);
+  const leave = <Button onClick={onLeave}>Go to the next shape</Button>;
+  if (isConfirmedElsewhere) {
+    return (
+      <Notice title="You confirmed this shape in another tab" actions={leave}>
+        There is nothing left to do here.
+      </Notice>
+    );
+  }
+  return (
+    <>
+      {lease.kind === "lost" && (
+        <Notice kind="warning" title="This shape is not yours any more" actions={leave}>
+          {lease.why} Your strokes are kept.
+        </Notice>
+      )}
+      {role === "watching" && <Watching open={open} />}
+      {save.kind === "conflict" && <ConflictBar open={open} divergence={save.divergence} />}
+      {(save.kind === "closed" || save.kind === "refused") && (
+        <Withdrawn open={open} title={titleOfRefusal(save.kind, save.nQueued)} why={save.why} leave={leave} />
+      )}
+      <SetAsideBar open={open} />
+    </>
+  );
+}
+
+function Watching({ open }: { open: OpenShape }) {
+  return (
+    <Notice
+      title="You have this shape open in another tab"
+      actions={
+        <Button variant="primary" onClick={() => void open.draft.right.takeOver()}>
+          Take over here
+        </Button>
+      }
+    >
+      Strokes made there show here. One tab edits at a time.
+    </Notice>
+  );
+}
+
+function Withdrawn(props: { open: OpenShape; title: string; why: string; leave: ReactNode }) {
+  return (
+    <Notice
+      kind="error"
+      title={props.title}
+      actions={
+        <>
+          <Button onClick={() => void props.open.draft.sender.withdraw()}>Set them aside</Button>
+          {props.leave}
+        </>
+      }
+    >
+      {props.why}
+    </Notice>
+  );
+}
+
+function titleOfRefusal(kind: "closed" | "refused", nQueued: number): string {
+  const strokes = count(nQueued, "stroke");
+  return kind === "closed"
+    ? `${strokes} came after this draft was closed elsewhere`
+    : `The service does not take ${strokes}`;
+}

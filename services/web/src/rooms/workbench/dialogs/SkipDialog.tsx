@@ -1,0 +1,79 @@
+import { type FormEvent, useState } from "react";
+import { Button, Dialog, Field } from "../../../components";
+import styles from "./SkipDialog.module.css";
+
+const REASONS = [
+  "The surface is broken",
+  "None of the parts fit",
+  "I cannot tell the parts apart",
+  "Another reason",
+] as const;
+const OTHER = REASONS[3];
+const LONGEST = 1_900;
+
+/** Why a shape cannot be labelled: the person does not get it again. */
+export function SkipDialog(props: {
+  name: string;
+  onSkip: (reason: string) => Promise<void>;
+  onClose: () => void;
+}) {
+  const { name, onSkip, onClose } = props;
+  const [reason, setReason] = useState<string>(REASONS[0]);
+  const [note, setNote] = useState("");
+  const [isBusy, setBusy] = useState(false);
+  const [error, setError] = useState<string | null>(null);
+  const submit = async (event: FormEvent) => {
+    event.preventDefault();
+    const words = [reason === OTHER ? "" : reason, note.trim()].filter((each) => each !== "").join(": ");
+    if (words === "") {
+      setError("Say in a few words what is wrong with it.");
+      return;
+    }
+    setBusy(true);
+    try {
+      await onSkip(words);
+    } catch (refused) {
+      setError(refused instanceof Error ? refused.message : String(refused));
+      setBusy(false);
+    }
+  };
+  return (
+    <Dialog
+      title={`Skip ${name}`}
+      size="small"
+      onClose={onClose}
+      footer={
+        <>
+          <Button onClick={onClose}>Cancel</Button>
+          <Button variant="primary" type="submit" form="skip" isBusy={isBusy}>
+            Skip this shape
+          </Button>
+        </>
+      }
+    >
+      <form id="skip" className={styles.form} onSubmit={(event) => void submit(event)}>
+        <fieldset className={styles.reasons}>
+          <legend className={styles.legend}>You will not get it again. What is wrong with it?</legend>
+          {REASONS.map((each) => (
+            <label key={each} className={styles.reason}>
+              <input type="radio" name="reason" checked={reason === each} onChange={() => setReason(each)} />
+              {each}
+            </label>
+          ))}
+        </fieldset>
+        <Field label="Note" hint="For whoever looks after the collection" error={error}>
+          {(control) => (
+            <textarea
+              {...control}
+              rows={2}
+              maxLength={LONGEST}
+              className={styles.note}
+              value={note}
+              onChange={(event) => setNote(event.target.value)}
+            />
+          )}
+        </Field>
+      </form>
+    </Dialog>
+  );
+}

@@ -1,0 +1,84 @@
+import { Button } from "../../../components";
+import { whole } from "../../../components/numbers";
+import { useObservable } from "../../../drafts/useObservable";
+import type { Desk } from "../desk/desk";
+import type { HeldShape } from "../desk/heldShape";
+import type { Part } from "../parts";
+import type { ToolShelf } from "../tools/toolSettings";
+import type { Refinement } from "../tools/useRefinement";
+import { HeldShapes } from "./HeldShapes";
+import { PartsList } from "./PartsList";
+import { RefinePanel } from "./RefinePanel";
+import { SaveMark } from "./SaveMark";
+import styles from "./ShapePanel.module.css";
+
+export interface ShapePanelProps {
+  desk: Desk;
+  held: HeldShape;
+  parts: readonly Part[];
+  shelf: ToolShelf;
+  refinement: Refinement;
+  isConfirming: boolean;
+  onConfirm: () => void;
+  onSkip: () => void;
+}
+
+/** All about the shape in hand: what it is, its parts, and how to be done with it. */
+export function ShapePanel(props: ShapePanelProps) {
+  const { desk, held, parts, shelf, refinement, isConfirming, onConfirm, onSkip } = props;
+  const { part } = useObservable(shelf.settings);
+  const state = useObservable(held.state);
+  const facts = useObservable(held.facts);
+  const open = state.step === "ready" ? state.open : null;
+  const { source_key: name, score, model_version: version } = held.lease;
+  return (
+    <aside className={styles.panel} aria-label="Shape in hand">
+      <header className={styles.header}>
+        <div className={styles.nameRow}>
+          <h2 className={styles.name} title={name}>
+            {name}
+          </h2>
+          {open !== null && <SaveMark open={open} />}
+        </div>
+        <dl className={styles.facts}>
+          <Fact name="Faces" value={facts?.nFaces == null ? "–" : whole(facts.nFaces)} />
+          <Fact name="Unsureness" value={score === null ? "–" : score.toFixed(3)} />
+          <Fact name="Model" value={version === null ? "none yet" : `version ${version}`} />
+        </dl>
+        <HeldShapes desk={desk} />
+      </header>
+      <div className={styles.scroll}>
+        <PartsList parts={parts} part={part} open={open} onPick={(id) => shelf.change({ part: id })} />
+        <RefinePanel
+          open={open}
+          shelf={shelf}
+          refinement={refinement}
+          hasConfirmed={facts?.headRevision != null}
+        />
+      </div>
+      <footer className={styles.footer}>
+        <Button onClick={onSkip}>Skip…</Button>
+        <Button
+          variant="primary"
+          className={styles.confirm ?? ""}
+          disabled={open === null || !open.canEdit}
+          isBusy={isConfirming}
+          aria-keyshortcuts="Enter"
+          title="Confirm these labels and go on to the next shape (Enter)"
+          onClick={onConfirm}
+        >
+          Confirm and next
+        </Button>
+      </footer>
+    </aside>
+  );
+}
+
+function Fact({ name, value }: { name: string; value: string }) {
+  return (
+    <div className={styles.fact}>
+      <dt>{name}</dt>
+      <dd title={value}>{value}</dd>
+    </div>
+  );
+}

@@ -1,0 +1,140 @@
+import { type ReactNode, useEffect, useMemo, useRef } from "react";
+import { Button, Notice } from "../../../components";
+import { useObservable } from "../../../drafts/useObservable";
+import { resolvedColour } from "../../../viewer/colours";
+import type { UpAxis } from "../../../viewer/pose";
+import type { ShapeStage } from "../../../viewer/shapeStage";
+import type { Desk } from "../desk/desk";
+import type { HeldShape } from "../desk/heldShape";
+import type { Part } from "../parts";
+import type { GestureContext } from "../tools/gestures";
+import type { ToolShelf } from "../tools/toolSettings";
+import type { Patches } from "../tools/usePatches";
+import styles from "./Stage.module.css";
+import { StageArea } from "./StageArea";
+import { type LiveView, Viewport } from "./Viewport";
+import { FIRST_LOOKS, type Views } from "./views";
+
+export interface StageProps {
+  desk: Desk;
+  shelf: ToolShelf;
+  parts: readonly Part[];
+  patches: Patches;
+  views: Views;
+  up: UpAxis;
+  scheme: string;
+  onActive: (live: LiveView | null) => void;
+  onRetry: (held: HeldShape) => void;
+  over: ReactNode;
+}
+
+/** All views, on one canvas. */
+export function Stage(props: StageProps) {
+  const { desk, views, over } = props;
+  const { shapes, current } = useObservable(desk.state);
+  const isByShape = views.content === "shapes" && views.count > 1;
+  const shown = Array.from({ length: views.count }, (_, at) => (isByShape ? (shapes[at] ?? null) : current));
+  return (
+    <StageArea count={views.count} over={over}>
+      {(stage) => <ViewGrid {...props} stage={stage} shown={shown} isByShape={isByShape} current={current} />}
+    </StageArea>
+  );
+}
+
+interface ViewGridProps extends StageProps {
+  stage: ShapeStage;
+  shown: readonly (HeldShape | null)[];
+  isByShape: boolean;
+  current: HeldShape | null;
+}
+
+function ViewGrid(props: ViewGridProps) {
+  const { stage, shown, isByShape, current, views, desk } = props;
+  const live = useRef<(LiveView | null)[]>([]);
+  const active = useRef(0);
+
+  const shownIds = shown.map((held) => held?.shapeId).join();
+  // biome-ignore lint/correctness/useExhaustiveDependencies: other views are to be linked once others are shown
+  useEffect(() => {
+    const linked = live.current.flatMap((each) => each?.view ?? []);
+    stage.link(views.isLinked ? linked : []);
+  }, [stage, views.isLinked, views.count, shownIds]);
+
+  return shown.map((held, at) => {
+    const engage = () => {
+      active.current = at;
+      props.onActive(live.current[at] ?? null);
+      if (held !== null && held !== current) desk.show(held);
+    };
+    const key = `${at}`;
+    if (held === null) return <EmptyView key={key} desk={desk} />;
+    return (
+      <OneView
+        key={key}
+        {...props}
+        held={held}
+        at={at}
+        isActive={isByShape ? held === current : active.current === at}
+        onEngage={engage}
+        onLive={(view) => {
+          live.current[at] = view;
+          if (active.current === at || view === null) props.onActive(live.current[active.current] ?? null);
+        }}
+      />
+    );
+  });
+}
+
+interface OneViewProps extends ViewGridProps {
+  held: HeldShape;
+  at: number;
+  isActive: boolean;
+  onEngage: () => void;
+  onLive: (live: LiveView | null) => void;
+}
+
+function OneView(props: OneViewProps) {
+  const { stage, shelf, parts, patches, views, held, at, isByShape, onEngage, onLive, scheme } = props;
+  const settings = useObservable(shelf.settings);
+  const isCurrent = held === props.current;
+  const colours = useMemo(() => new Map(parts.map((part) => [part.id, part.colour])), [parts]);
+  const context: GestureContext = {
+    shelf,
+    open: () => held.open,
+    patches: () => (isCurrent ? patches.map : null),
+    colourOf: (part) => colours.get(part) ?? resolvedColour(document.body, "var(--unlabelled)"),
+    onEngage,
+  };
+  return (
+    <Viewport
+      stage={stage}
+      held={held}
+      up={props.up}
+      name={views.count === 1 ? "Shape" : `View ${at + 1} of ${views.count}`}
+      firstLook={isByShape ? FIRST_LOOKS[0] : (FIRST_LOOKS[at] ?? FIRST_LOOKS[0])}
+      parts={parts}
+      scheme={scheme}
+      toolKey={`${settings.tool} ${settings.radius}`}
+      isActive={props.isActive}
+      title={isByShape ? held.lease.source_key : null}
+      context={context}
+      onView={onLive}
+      onRetry={() => props.onRetry(held)}
+      onGiveUp={() => void props.desk.release(held)}
+    />
+  );
+}
+
+function EmptyView({ desk }: { desk: Desk }) {
+  return (
+    <div className={styles.empty}>
+      <Notice
+        kind="empty"
+        title="Room for another shape"
+        actions={<Button onClick={() => void desk.takeNext()}>Take the next of the queue</Button>}
+      >
+        Or choose shapes in the table and open them here.
+      </Notice>
+    </div>
+  );
+}

@@ -1,0 +1,69 @@
+import { type ReactNode, useEffect, useRef, useState } from "react";
+import { Notice } from "../../../components";
+import { ShapeStage } from "../../../viewer/shapeStage";
+import styles from "./StageArea.module.css";
+import type { ViewCount } from "./views";
+
+/** The canvas behind all views, and the grid that they stand in. */
+export function StageArea(props: {
+  count: ViewCount;
+  over: ReactNode;
+  children: (stage: ShapeStage) => ReactNode;
+}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [stage, setStage] = useState<ShapeStage | null>(null);
+  const [why, setWhy] = useState<string | null>(null);
+  const [isLost, setLost] = useState(false);
+  const [attempt, setAttempt] = useState(0);
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: another canvas, another stage
+  useEffect(() => {
+    if (canvas.current === null) return undefined;
+    try {
+      const made = new ShapeStage(canvas.current);
+      made.onContext = (state) => setLost(state === "lost");
+      setStage(made);
+      return () => {
+        setStage(null);
+        made.dispose();
+      };
+    } catch (error) {
+      setWhy(error instanceof Error ? error.message : String(error));
+      return undefined;
+    }
+  }, [attempt]);
+
+  if (why !== null) {
+    return (
+      <div className={styles.area}>
+        <Notice kind="error" isCentred title="Shapes cannot be shown">
+          {why}
+        </Notice>
+      </div>
+    );
+  }
+  return (
+    <div className={styles.area}>
+      <canvas key={attempt} ref={canvas} className={styles.canvas} />
+      <div className={styles.grid} data-count={props.count}>
+        {stage !== null && props.children(stage)}
+      </div>
+      <div className={styles.over}>
+        {isLost && (
+          <Notice
+            kind="warning"
+            title="The graphics card was taken away"
+            actions={
+              <button type="button" className={styles.link} onClick={() => setAttempt(attempt + 1)}>
+                Show the shapes again
+              </button>
+            }
+          >
+            Your strokes are safe. It usually comes back by itself.
+          </Notice>
+        )}
+        {props.over}
+      </div>
+    </div>
+  );
+}

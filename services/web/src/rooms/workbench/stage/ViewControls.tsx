@@ -1,0 +1,83 @@
+import { Columns2, Grid2x2, Link2, Maximize, PanelsLeftBottom, Square } from "lucide-react";
+import type { ReactNode } from "react";
+import { IconButton, Menu, MenuItem, Segmented } from "../../../components";
+import type { NamedView } from "../../../viewer/pose";
+import styles from "./ViewControls.module.css";
+import type { ViewContent, ViewCount, Views } from "./views";
+
+const COUNTS: readonly { value: `${ViewCount}`; label: string; icon: ReactNode }[] = [
+  { value: "1", label: "One view", icon: <Square /> },
+  { value: "2", label: "Two views", icon: <Columns2 /> },
+  { value: "3", label: "Three views", icon: <PanelsLeftBottom /> },
+  { value: "4", label: "Four views", icon: <Grid2x2 /> },
+];
+const LOOKS: readonly [NamedView, string, string | undefined][] = [
+  ["threeQuarter", "From a corner", undefined],
+  ["front", "From the front", "⇧F"],
+  ["back", "From the back", "⇧B"],
+  ["left", "From the left", "⇧L"],
+  ["right", "From the right", "⇧R"],
+  ["top", "From the top", "⇧T"],
+  ["bottom", "From below", "⇧U"],
+];
+
+export interface ViewControlsProps {
+  views: Views;
+  onChange: (some: Partial<Views>) => void;
+  onFrame: (look?: NamedView) => void;
+}
+
+/** How many views there are, what they show, and where the active one looks from. */
+export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
+  return (
+    <div className={styles.controls}>
+      {views.count > 1 && (
+        <>
+          <Segmented<ViewContent>
+            label="What the views show"
+            size="small"
+            value={views.content}
+            onChange={(content) => onChange({ content })}
+            options={[
+              { value: "cameras", label: "One shape" },
+              { value: "shapes", label: "Shapes in hand" },
+            ]}
+          />
+          <IconButton
+            label="Link cameras"
+            shortcut="L"
+            size="small"
+            icon={<Link2 />}
+            isPressed={views.isLinked}
+            onClick={() => onChange({ isLinked: !views.isLinked })}
+          />
+        </>
+      )}
+      <Segmented
+        label="Number of views"
+        size="small"
+        value={`${views.count}`}
+        options={COUNTS}
+        onChange={(value) => onChange({ count: Number(value) as ViewCount })}
+      />
+      <Menu label="Look from" alignment="end">
+        {LOOKS.map(([look, words, keys]) => (
+          <MenuItem
+            key={look}
+            onSelect={() => onFrame(look)}
+            {...(keys === undefined ? {} : { shortcut: keys })}
+          >
+            {words}
+          </MenuItem>
+        ))}
+      </Menu>
+      <IconButton
+        label="Whole shape in view"
+        shortcut="F"
+        size="small"
+        icon={<Maximize />}
+        onClick={() => onFrame()}
+      />
+    </div>
+  );
+}
