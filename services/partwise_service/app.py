@@ -3,7 +3,8 @@
 import re
 import time
 from collections.abc import AsyncIterator, Callable, Sequence
-from contextlib import ExitStack, asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
+from datetime import timedelta
 
 from anyio.to_thread import current_default_thread_limiter
 from fastapi import APIRouter, FastAPI
@@ -12,6 +13,7 @@ from starlette.middleware.cors import CORSMiddleware
 
 from partwise import __version__
 from partwise.workspace.workspace import open_workspace
+from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
 from partwise_service.page import install_page
@@ -39,6 +41,7 @@ from partwise_service.routes import (
     tools,
     uploads,
 )
+from partwise_service.schemas.operations import OpsOut
 from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
@@ -87,14 +90,15 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         current_default_thread_limiter().total_tokens = settings.threads
-        with ExitStack() as resources:
+        async with AsyncExitStack() as resources:
             workspace = resources.enter_context(open_workspace(settings.workspace))
             limiter = FailureLimiter(settings.max_auth_failures, settings.auth_window_s, clock)
             pool = ToolPool(workspace.array_url, _pool_limits(settings))
             resources.callback(pool.close)
-            app.state.service = Service(
-                settings, workspace, limiter, RecentlyGood(), EmbeddingMaps(), pool, Remembered(OPS_S, clock)
-            )
+            hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h))
+            await resources.enter_async_context(hub.running())
+            ops = Remembered[OpsOut](OPS_S, clock)
+            app.state.service = Service(settings, workspace, limiter, RecentlyGood(), EmbeddingMaps(), pool, ops, hub)
             yield
 
     app = FastAPI(

@@ -4,9 +4,9 @@ import json
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 
 from partwise.store.records import Event, EventBounds
+from partwise_service.event_hub import PAGE
 
 HEARTBEAT_TURNS = 15
-PAGE = 500
 RECONNECT_MS = 2_000
 
 
@@ -23,7 +23,8 @@ async def event_stream(
 
     Parameters
     ----------
-    read : a page of at most `PAGE` events after an id. go_on : waits for the next turn; False ends the stream.
+    read : the next events after an id; what is left is read in the next turn, which comes at once after `PAGE` of them.
+    go_on : waits for the next turn; False ends the stream.
     after : the last id that the client has; None for what comes from now on.
     """
     known = await bounds()

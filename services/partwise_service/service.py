@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from partwise.workspace.workspace import Workspace
+from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.remembered import Remembered
 from partwise_service.schemas.operations import OpsOut
@@ -23,3 +24,4 @@ class Service:
     maps: EmbeddingMaps
     tools: ToolPool
     ops: Remembered[OpsOut]
+    events: EventHub

@@ -1,22 +1,21 @@
 """/events: changes in the queue, training, stages, jobs, people and shapes, pushed to open pages."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import AsyncIterator
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
-import anyio
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import StreamingResponse
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import Event, EventKind
+from partwise.store.records import EventKind
 from partwise_service.dependencies import Caller, CatalogDep, ServiceDep
-from partwise_service.event_stream import PAGE, event_stream
+from partwise_service.event_hub import POLL_S, Listener
+from partwise_service.event_stream import event_stream
 from partwise_service.security.identity import Identity
 
-POLL_S = 1.0
 CHECK_S = 30.0
 MAX_EVENT_ID = 2**53
 _ID_DIGITS = 15
@@ -52,26 +51,28 @@ async def stream_events(
 
     The first is `begin`, or `missed` if some since then are forgotten: then read everything anew.
     """
-    scope = caller.token.scope
+    hub = service.events
     begun = checked = time.monotonic()
-
-    async def read(last: int) -> Sequence[Event]:
-        return await run_sync(lambda: catalog.events(after=last, collection_ids=scope, limit=PAGE))
 
     async def go_on() -> bool:
         nonlocal checked
         if time.monotonic() - begun >= service.settings.event_stream_s:
             return False
-        await anyio.sleep(POLL_S)
+        await hub.news(POLL_S)
         if time.monotonic() - checked >= CHECK_S:
             checked = time.monotonic()
             if not await run_sync(lambda: is_still_good(catalog, caller)):
                 return False
         return not await request.is_disconnected()
 
+    async def told() -> AsyncIterator[str]:
+        listener = Listener(hub, catalog, caller.token.scope)
+        async with hub.listening():
+            async for piece in event_stream(lambda: run_sync(catalog.event_bounds), listener.read, go_on, resumed):
+                yield piece
+
     resumed = after if last_event_id is None else _event_id(last_event_id)
-    stream = event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed)
-    return StreamingResponse(stream, media_type=EVENT_STREAM, headers={"X-Accel-Buffering": "no"})
+    return StreamingResponse(told(), media_type=EVENT_STREAM, headers={"X-Accel-Buffering": "no"})
 
 
 def is_still_good(catalog: Catalog, caller: Identity) -> bool:

@@ -2,12 +2,14 @@
 
 import asyncio
 import json
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
 from partwise.store.records import Event, EventBounds, EventKind, NewEvent
-from partwise_service.event_stream import HEARTBEAT_TURNS, PAGE, event_stream
+from partwise_service import event_hub
+from partwise_service.event_hub import PAGE, EventHub, Listener
+from partwise_service.event_stream import HEARTBEAT_TURNS, event_stream
 from partwise_service.routes.events import is_still_good
 from partwise_service.security.identity import Identity
 from partwise_service.settings import ServiceSettings
@@ -93,6 +95,155 @@ def test_a_stream_ends_with_its_token(annotator, workspace) -> None:
     assert is_still_good(workspace.catalog, Identity(token))
     workspace.catalog.revoke_token(token.id, "test")
     assert not is_still_good(workspace.catalog, Identity(token))
+
+
+class _CountingCatalog:
+    """Events in memory, and how often they were asked for."""
+
+    def __init__(self, *events: Event) -> None:
+        self.stored = list(events)
+        self.n_reads = 0
+        self.pruned_before: list[datetime] = []
+
+    def events(self, *, after: int, collection_ids=None, limit: int = 1000) -> list[Event]:
+        self.n_reads += 1
+        theirs = [e for e in self.stored if collection_ids is None or e.collection_id in (None, *collection_ids)]
+        return [event for event in theirs if event.id > after][:limit]
+
+    def event_bounds(self) -> EventBounds:
+        return EventBounds(self.stored[0].id, self.stored[-1].id) if self.stored else EventBounds(0, 0)
+
+    def prune_events(self, before: datetime, *, limit: int = 10_000) -> int:
+        self.pruned_before.append(before)
+        return 0
+
+    def add(self, collection_id: int | None = None) -> int:
+        event_id = self.stored[-1].id + 1 if self.stored else 1
+        self.stored.append(Event(event_id, datetime(2026, 1, 1, tzinfo=UTC), EventKind.JOB, collection_id, {}))
+        return event_id
+
+
+def _hub(catalog: _CountingCatalog) -> EventHub:
+    return EventHub(catalog, timedelta(hours=1))
+
+
+def _ids(events) -> list[int]:
+    return [event.id for event in events]
+
+
+def test_events_are_read_once_for_all_streams() -> None:
+    catalog = _CountingCatalog()
+
+    async def listen() -> None:
+        hub = _hub(catalog)
+        await hub.begin_now()
+        listeners = [Listener(hub, catalog, None) for _ in range(50)]
+        assert [_ids(await each.read(0)) for each in listeners] == [[]] * 50
+        before = catalog.n_reads
+        catalog.add()
+        await hub.read_on()
+        assert [_ids(await each.read(0)) for each in listeners] == [[1]] * 50
+        assert catalog.n_reads == before + 1
+        assert [_ids(await each.read(1)) for each in listeners] == [[]] * 50
+
+    asyncio.run(listen())
+
+
+def test_a_stream_hears_of_its_collections_and_of_none() -> None:
+    catalog = _CountingCatalog()
+
+    async def listen() -> None:
+        hub = _hub(catalog)
+        await hub.begin_now()
+        listener = Listener(hub, catalog, (7,))
+        await listener.read(0)
+        for collection_id in (7, 8, None):
+            catalog.add(collection_id)
+        await hub.read_on()
+        assert _ids(await listener.read(0)) == [1, 3]
+
+    asyncio.run(listen())
+
+
+def test_a_stream_that_falls_behind_reads_on_from_the_catalog(monkeypatch) -> None:
+    monkeypatch.setattr(event_hub, "MAX_RECENT", 2)
+    catalog = _CountingCatalog()
+
+    async def listen() -> None:
+        hub = _hub(catalog)
+        await hub.begin_now()
+        listener = Listener(hub, catalog, (7,))
+        await listener.read(0)
+        for _ in range(3):
+            catalog.add(7)
+        catalog.add(8)
+        await hub.read_on()
+        before = catalog.n_reads
+        assert _ids(await listener.read(0)) == [1, 2, 3]
+        assert catalog.n_reads == before + 1
+        assert _ids(await listener.read(3)) == []
+        assert catalog.n_reads == before + 1
+
+    asyncio.run(listen())
+
+
+def test_nothing_is_missed_when_the_hub_begins_after_a_stream() -> None:
+    catalog = _CountingCatalog()
+
+    async def listen() -> None:
+        hub = _hub(catalog)
+        listener = Listener(hub, catalog, None)
+        catalog.add()
+        assert _ids(await listener.read(0)) == [1]
+        catalog.add()
+        await hub.begin_now()
+        catalog.add()
+        await hub.read_on()
+        assert _ids(await listener.read(1)) == [2, 3]
+
+    asyncio.run(listen())
+
+
+def test_the_catalog_is_left_alone_while_nobody_listens() -> None:
+    catalog = _CountingCatalog()
+
+    async def run() -> None:
+        async with _hub(catalog).running():
+            for _ in range(20):
+                await asyncio.sleep(0)
+
+    asyncio.run(run())
+    assert catalog.n_reads == 0
+
+
+def test_old_events_are_forgotten() -> None:
+    catalog = _CountingCatalog()
+
+    async def run() -> None:
+        async with _hub(catalog).running():
+            while not catalog.pruned_before:
+                await asyncio.sleep(0.001)
+
+    asyncio.run(run())
+    age = datetime.now(UTC) - catalog.pruned_before[0]
+    assert timedelta(minutes=59) < age < timedelta(minutes=61)
+
+
+def test_who_waits_hears_of_news_at_once() -> None:
+    catalog = _CountingCatalog()
+
+    async def run() -> list[int]:
+        async with _hub(catalog).running() as hub, hub.listening():
+            listener = Listener(hub, catalog, None)
+            await listener.read(0)
+            catalog.add()
+            found: list[Event] = []
+            while not found:
+                await hub.news(60)
+                found = list(await listener.read(0))
+            return _ids(found)
+
+    assert asyncio.run(run()) == [1]
 
 
 def _streamed(stored: list[Event], n_turns: int, after: int | None = 0) -> list[str]:

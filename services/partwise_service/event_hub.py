@@ -1,0 +1,155 @@
+"""`EventHub`: reads new events for all streams of the process, and forgets old ones."""
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager, suppress
+from datetime import UTC, datetime, timedelta
+
+from anyio.to_thread import run_sync
+
+from partwise.errors import PartwiseError
+from partwise.store.catalog import EventCatalog
+from partwise.store.records import Event
+
+POLL_S = 1.0
+PAGE = 500
+MAX_RECENT = 5_000
+"""Events in memory. A stream that falls behind them reads on from the catalog."""
+_PRUNED_AT_ONCE = 10_000
+_log = logging.getLogger(__name__)
+
+
+class EventHub:
+    """One reader of events, however many streams there are: it asks the catalog while any of them is open.
+
+    All of it happens on the event loop; only the catalog is read on threads.
+
+    Parameters
+    ----------
+    keep : how old events get before they are forgotten. prune_every_s : how often that is looked after.
+    """
+
+    def __init__(self, catalog: EventCatalog, keep: timedelta, prune_every_s: float = 600.0) -> None:
+        self._catalog = catalog
+        self._keep = keep
+        self._prune_every_s = prune_every_s
+        self._recent: deque[Event] = deque(maxlen=MAX_RECENT)
+        self._floor = 0  # the id after which all events are in `_recent`
+        self._newest = 0
+        self._n_streams = 0
+        self._has_news = asyncio.Event()
+        self._wanted = asyncio.Event()
+
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator["EventHub"]:
+        """Reads and prunes until the block ends."""
+        tasks = [asyncio.create_task(self._poll()), asyncio.create_task(self._prune())]
+        try:
+            yield self
+        finally:
+            for task in tasks:
+                task.cancel()
+            for task in tasks:
+                with suppress(asyncio.CancelledError):
+                    await task
+
+    @asynccontextmanager
+    async def listening(self) -> AsyncIterator[None]:
+        """For as long as a stream is open."""
+        self._n_streams += 1
+        self._wanted.set()
+        try:
+            yield
+        finally:
+            self._n_streams -= 1
+            if not self._n_streams:
+                self._wanted.clear()
+
+    @property
+    def newest(self) -> int:
+        """The id of the last event taken in."""
+        return self._newest
+
+    def since(self, last: int) -> Sequence[Event] | None:
+        """All events after this id that are known here; None if some may be known to the catalog only."""
+        if last < self._floor:
+            return None
+        return [event for event in self._recent if event.id > last]
+
+    async def news(self, timeout_s: float) -> None:
+        """Returns when there are new events, or after this time."""
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._has_news.wait(), timeout_s)
+
+    async def read_on(self) -> int:
+        """Takes in what is new; how many events that are."""
+        found = await run_sync(lambda: self._catalog.events(after=self._newest, limit=PAGE))
+        for event in found:
+            if len(self._recent) == MAX_RECENT:
+                self._floor = self._recent[0].id
+            self._recent.append(event)
+        if found:
+            self._newest = found[-1].id
+            waiting, self._has_news = self._has_news, asyncio.Event()
+            waiting.set()
+        return len(found)
+
+    async def begin_now(self) -> None:
+        """Forgets what it knows and goes on from the newest event on record."""
+        self._newest = self._floor = (await run_sync(self._catalog.event_bounds)).newest
+        self._recent.clear()
+
+    async def _poll(self) -> None:
+        while True:
+            await self._wanted.wait()
+            try:
+                await self.begin_now()
+                while self._n_streams:
+                    if await self.read_on() < PAGE:
+                        await asyncio.sleep(POLL_S)
+            except PartwiseError:  # the catalog is away for a moment: streams are silent until it is back
+                _log.exception("events cannot be read")
+                await asyncio.sleep(POLL_S)
+
+    async def _prune(self) -> None:
+        while True:
+            try:
+                before = datetime.now(UTC) - self._keep
+                while await run_sync(lambda: self._catalog.prune_events(before, limit=_PRUNED_AT_ONCE)):  # noqa: B023 # awaited in the loop
+                    pass
+            except PartwiseError:
+                _log.exception("old events cannot be forgotten")
+            await asyncio.sleep(self._prune_every_s)
+
+
+class Listener:
+    """What one stream has read: from the hub, or from the catalog where the hub's memory does not reach back.
+
+    scope : the collections that the stream may tell of; None for all. Events of no collection are for all.
+    """
+
+    def __init__(self, hub: EventHub, catalog: EventCatalog, scope: Sequence[int] | None) -> None:
+        self._hub = hub
+        self._catalog = catalog
+        self._scope = scope
+        self._position: int | None = None
+
+    async def read(self, last: int) -> Sequence[Event]:
+        """The next events that the stream tells, after those of the last call; after this id in the first."""
+        known = None if self._position is None else self._hub.since(self._position)
+        if known is None:
+            return await self._read_catalog(last if self._position is None else self._position)
+        self._position = known[-1].id if known else self._position
+        return [event for event in known if self._is_theirs(event)]
+
+    async def _read_catalog(self, after: int) -> Sequence[Event]:
+        newest = self._hub.newest
+        found = await run_sync(lambda: self._catalog.events(after=after, collection_ids=self._scope, limit=PAGE))
+        last = found[-1].id if found else after
+        self._position = last if len(found) == PAGE else max(last, newest)
+        return found
+
+    def _is_theirs(self, event: Event) -> bool:
+        return self._scope is None or event.collection_id is None or event.collection_id in self._scope
