@@ -123,7 +123,7 @@ def test_what_is_not_utf8_is_named(file: Path) -> None:
     [
         # sections and keys
         ("[worker]\nn_actors = 1\n", (": section worker", "did you mean workers?")),
-        ("verbose = true\n", (": key verbose (= True)", "known are stores, workers, mesh")),
+        ("verbose = true\n", (": key verbose (= True)", "known are stores, workers, jobs, mesh")),
         ("workers = 3\n", (": workers must be a section but is 3", "[workers]")),
         ("[workers]\nn_actor = 3\n", ("[workers] key n_actor (= 3)", "did you mean n_actors?")),
         ("[mesh]\nzzz = 3\n", ("[mesh] key zzz (= 3)", "known are max_faces")),
@@ -159,6 +159,10 @@ def test_what_is_not_utf8_is_named(file: Path) -> None:
         ("[workers.limits.describe]\ndeadline_s = 0\n", ("[workers.limits.describe] deadline_s must be more than 0",)),
         ("[workers.limits.remesh]\nmemory_gb = nan\n", ("memory_gb must be more than 0 but is nan",)),
         ("[workers]\nrecycle_after = 0\n", ("[workers] recycle_after must be 1 or more but is 0",)),
+        ("[jobs]\npoll_s = 0\n", ("[jobs] poll_s must be more than 0 but is 0.0",)),
+        ("[jobs]\npulse_s = -1\n", ("[jobs] pulse_s must be more than 0 but is -1.0",)),
+        ("[jobs]\nrank_every_s = 0\n", ("[jobs] rank_every_s must be more than 0 but is 0.0",)),
+        ("[jobs]\nlost_after_s = 9\n", ("[jobs] lost_after_s must be 5 × pulse_s (10) or more but is 9.0",)),
         ("[workers]\nmax_attempts = 0\n", ("[workers] max_attempts must be 1 or more but is 0",)),
         ("[workers]\nblock_shapes = 0\n", ("[workers] block_shapes must be 1 to 4096 but is 0",)),
         ("[workers]\nblock_shapes = 4097\n", ("[workers] block_shapes must be 1 to 4096 but is 4097",)),

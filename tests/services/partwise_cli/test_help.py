@@ -40,7 +40,7 @@ def test_the_commands_are_these() -> None:
     assert set(COMMANDS) == {
         "init", "settings", "ingest", "preprocess", "retry", "status", "gc", "migrate", "import", "confirm", "export",
         "segment", "segment patches", "segment refine", "segment replay",
-        "train", "evaluate", "refine", "select", "queue", "serve", "token", "token create", "token list",
+        "train", "evaluate", "refine", "select", "queue", "serve", "up", "work", "token", "token create", "token list",
         "token revoke", "reviews", "reviews list", "reviews accept", "simulate", "demo", "doctor", "version", "bench",
         "bench describe",
         "bench loo", "bench remeshing", "bench calibration", "bench scheduling", "bench throughput", "bench toolbox",
