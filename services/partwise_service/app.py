@@ -13,6 +13,7 @@ from starlette.middleware.cors import CORSMiddleware
 
 from partwise import __version__
 from partwise.workspace.workspace import open_workspace
+from partwise_service.compression import CompressionMiddleware
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
@@ -132,6 +133,7 @@ def _operation_id(route: APIRoute) -> str:
 
 def _add_middleware(app: FastAPI, settings: ServiceSettings) -> None:
     """From the innermost to the outermost."""
+    app.add_middleware(CompressionMiddleware)
     app.add_middleware(BodyLimitMiddleware, settings.max_body_bytes, settings.max_upload_bytes, UPLOAD_PATH)
     app.add_middleware(FaultMiddleware)
     if settings.cors_origins:

@@ -24,7 +24,13 @@ RemeshPolicy = Literal["auto", "never"]
 UP = "Which axis points up in pictures."
 FACES = "Faces of the meshes to label, where shapes are remeshed."
 REMESH = "auto: remesh what is not clean; never: take every mesh as it is."
-SETTING_NAMES = {"up": "up", "working_faces": "faces", "remesh": "remesh"}
+LABELS = "People who label each shape, independently of each other: 1 to 9."
+AGREEMENT = "Share of the area on which their labels must agree to be taken."
+HONEYPOTS = "Share of claims that get a shape whose true labels are known."
+REVIEW = "Have a reviewer look at what is confirmed."
+TRAIN_AFTER = "Confirmed shapes after which a training is asked for; 0: never by itself."
+SETTING_NAMES = {"working_faces": "faces"}
+"""Of those that are not called what their column is."""
 
 
 def register(app: typer.Typer) -> None:
@@ -47,7 +53,7 @@ def init(
     from partwise.workspace.workspace import init_collection
 
     names = [name.strip() for name in parts.split(",") if name.strip()]
-    init_collection(ws, collection, names, asdict(CollectionSettings(up, faces, remesh)))
+    init_collection(ws, collection, names, asdict(CollectionSettings(up=up, working_faces=faces, remesh=remesh)))
     typer.echo(f"{ws}: collection {collection!r} with {counted(len(names), 'part')}: {', '.join(names)}")
 
 
@@ -57,6 +63,11 @@ def settings(
     up: Annotated[Axis | None, typer.Option(help=UP, show_default=False)] = None,
     faces: Annotated[int | None, typer.Option(help=FACES, show_default=False)] = None,
     remesh: Annotated[RemeshPolicy | None, typer.Option(help=REMESH, show_default=False)] = None,
+    labels_per_shape: Annotated[int | None, typer.Option(help=LABELS, show_default=False)] = None,
+    agreement: Annotated[float | None, typer.Option(help=AGREEMENT, show_default=False)] = None,
+    honeypot_share: Annotated[float | None, typer.Option(help=HONEYPOTS, show_default=False)] = None,
+    review: Annotated[bool | None, typer.Option(help=REVIEW, show_default=False)] = None,
+    train_after: Annotated[int | None, typer.Option(help=TRAIN_AFTER, show_default=False)] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Show or change settings.  [dim]partwise settings ws --faces 20000[/dim]"""
@@ -64,7 +75,16 @@ def settings(
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
-    given = {"up": up, "working_faces": faces, "remesh": remesh}
+    given = {
+        "up": up,
+        "working_faces": faces,
+        "remesh": remesh,
+        "labels_per_shape": labels_per_shape,
+        "agreement": agreement,
+        "honeypot_share": honeypot_share,
+        "review": review,
+        "train_after": train_after,
+    }
     changes = {name: value for name, value in given.items() if value is not None}
     with open_workspace(ws) as workspace:
         found = find_collection(workspace, collection)
@@ -73,7 +93,10 @@ def settings(
     if as_json:
         print_json(asdict(after))
         return
-    rows = [(SETTING_NAMES[name], str(value), str(getattr(before, name))) for name, value in asdict(after).items()]
+    rows = [
+        (SETTING_NAMES.get(name, name.replace("_", " ")), str(value), str(getattr(before, name)))
+        for name, value in asdict(after).items()
+    ]
     columns = ("setting", "value", "before") if changes else ("setting", "value")
     print_table(f"Settings of {found.name}", columns, [row[: len(columns)] for row in rows])
     if (before.working_faces, before.remesh) != (after.working_faces, after.remesh):

@@ -1,11 +1,7 @@
 """/collections: what one may see, and what operators make and set."""
 
-from dataclasses import fields
-
 from fastapi import APIRouter
 
-from partwise.store.queue_settings import QueueSettings, queue_settings_of
-from partwise.store.records import JobKind
 from partwise.workspace.settings import change_settings
 from partwise_service.dependencies import (
     Caller,
@@ -18,7 +14,6 @@ from partwise_service.dependencies import (
 from partwise_service.schemas.base import refuse_unprintable
 from partwise_service.schemas.collections import CollectionOut, CollectionsOut, NewCollection, SettingsChange
 
-QUEUE_SETTINGS = {each.name for each in fields(QueueSettings)}
 router = APIRouter(prefix="/collections", tags=["collections"])
 
 
@@ -53,12 +48,6 @@ def set_collection(
     given = change.model_dump(exclude_none=True)
     if not given:
         return CollectionOut.of(collection)
-    of_queue = {name: given.pop(name) for name in QUEUE_SETTINGS & given.keys()}
-    changed = change_settings(workspace, collection, given) if given else collection
-    if of_queue:
-        queue_settings_of({**collection.settings, **of_queue})  # raises for what does not fit
-        changed = workspace.catalog.update_collection_settings(collection.id, of_queue)
-    if "labels_per_shape" in of_queue:
-        workspace.catalog.enqueue_job(collection.id, JobKind.REFILL)
-    workspace.catalog.append_audit(caller.name, "set", f"collection {collection.id}", {**given, **of_queue})
+    changed = change_settings(workspace, collection, given)
+    workspace.catalog.append_audit(caller.name, "set", f"collection {collection.id}", given)
     return CollectionOut.of(changed)
