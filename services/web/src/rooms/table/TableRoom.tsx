@@ -78,7 +78,7 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
           <SelectionBar collectionId={collectionId} selection={selection} onOpen={open} />
         </section>
       </div>
-      <SidePanel collectionId={collectionId} state={state} selection={selection} />
+      <SidePanel {...{ collectionId, list, state, selection }} />
     </div>
   );
 }

@@ -2,7 +2,7 @@
 import { queryOptions } from "@tanstack/react-query";
 import { api, body } from "../../../api/client";
 import type { ShapeFilters } from "../view/tableView";
-import { PAGE_ROWS, type RowPage } from "./shapeRows";
+import { PAGE_ROWS, type RowPage, type ShapeRow } from "./shapeRows";
 
 /** A list of shapes: filters and an order, as they were at a generation. "Show the new order" begins the next one. */
 export interface RowList {
@@ -45,6 +45,18 @@ export function fetchRows(
   return body(
     api.GET("/api/v1/collections/{collection_id}/shapes/ranked", { params, ...(signal ? { signal } : {}) }),
   );
+}
+
+/** Rows of these shapes, with their score of the list's order. */
+export async function fetchNamedRows(
+  list: RowList,
+  shapeIds: readonly number[],
+): Promise<readonly ShapeRow[]> {
+  const params = {
+    path: { collection_id: list.collectionId },
+    query: { id: [...shapeIds], order: list.order ?? "none" },
+  };
+  return (await body(api.GET("/api/v1/collections/{collection_id}/shapes/rows", { params }))).items;
 }
 
 /** Everything that hangs on a list, for changing or dropping it at once. */

@@ -26,8 +26,8 @@ export interface SelectionState {
   all(nShapes: number): void;
   move(place: number): void;
   none(): void;
-  /** These rows, from elsewhere, as from the map. */
-  replace(rows: readonly ShapeRow[], nMore?: number): void;
+  /** These rows, from elsewhere, as from the map; `nMore`: others that were meant, too. */
+  take(rows: readonly ShapeRow[], isAdding: boolean, nMore: number): void;
   refresh(rows: Iterable<ShapeRow>): void;
 }
 
@@ -61,8 +61,8 @@ export function useSelection(readRange: ReadRange): SelectionState {
         ),
       move: (place: number) => setSelection((held) => moveTo(held, place)),
       none: () => setSelection(chooseNone),
-      replace: (rows: readonly ShapeRow[], nMore = 0) =>
-        setSelection((held) => chooseRange(held, rows, { cursor: held.cursor, isAdding: false, nMore })),
+      take: (rows: readonly ShapeRow[], isAdding: boolean, nMore: number) =>
+        setSelection((held) => chooseRange(held, rows, { cursor: held.cursor, isAdding, nMore })),
       refresh: (rows: Iterable<ShapeRow>) => setSelection((held) => refreshed(held, rows)),
     }),
     [anchor, read],

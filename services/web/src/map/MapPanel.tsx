@@ -1,0 +1,44 @@
+import { useQuery } from "@tanstack/react-query";
+import { Problem } from "../api/problem";
+import { Button, Notice, Spinner } from "../components";
+import { EmbeddingMap } from "./EmbeddingMap";
+import { mapQuery } from "./mapPoints";
+
+export interface MapPanelProps {
+  readonly collectionId: number;
+  /** Ids of the shapes that are selected beside the map. */
+  readonly chosen: ReadonlySet<number>;
+  /** The cluster that the list is limited to. */
+  readonly cluster: number | null;
+  /** Whether the person may say what comes first in the queue. */
+  readonly mayOrder: boolean;
+  onChoose(shapeIds: readonly number[], isAdding: boolean): void;
+  onCluster(cluster: number | null): void;
+}
+
+/** The map of a collection, or why there is none. */
+export function MapPanel(props: MapPanelProps) {
+  const map = useQuery(mapQuery(props.collectionId));
+  if (map.data !== undefined) return <EmbeddingMap key={map.dataUpdatedAt} points={map.data} {...props} />;
+  if (map.error instanceof Problem && map.error.status === 404) {
+    return (
+      <Notice kind="empty" title="No map yet">
+        It is drawn once shapes are described and the first ones are chosen: an operator runs{" "}
+        <code>partwise select</code>.
+      </Notice>
+    );
+  }
+  if (map.error !== null) {
+    return (
+      <Notice
+        kind="error"
+        isCentred
+        title="The map could not be read"
+        actions={<Button onClick={() => void map.refetch()}>Try again</Button>}
+      >
+        {map.error.message}
+      </Notice>
+    );
+  }
+  return <Spinner label="Reading the map" />;
+}

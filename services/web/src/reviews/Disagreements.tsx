@@ -1,0 +1,90 @@
+import { useQuery } from "@tanstack/react-query";
+import { Link } from "wouter";
+import { roomAddress } from "../app/rooms";
+import { Badge, Button, Notice, Time, useToast } from "../components";
+import { percent } from "../components/numbers";
+import { Asked } from "./Asked";
+import { LabelsPicture } from "./LabelsPicture";
+import styles from "./Reviews.module.css";
+import { type Disagreement, disagreementsQuery, useDecision } from "./reviewRequests";
+
+/** Shapes that several people labelled too differently, for somebody to say whose labels are right. */
+export function Disagreements({ collectionId }: { collectionId: number }) {
+  const query = useQuery(disagreementsQuery(collectionId));
+  return (
+    <Asked what="the disagreements" query={query}>
+      {({ items }) =>
+        items.length === 0 ? (
+          <Notice kind="empty" title="No disagreements">
+            They show where a collection asks for several labels of a shape, and people's differ too much.
+          </Notice>
+        ) : (
+          <ul className={styles.list}>
+            {items.map((each) => (
+              <li key={each.review_id}>
+                <DisagreementCard collectionId={collectionId} disagreement={each} />
+              </li>
+            ))}
+          </ul>
+        )
+      }
+    </Asked>
+  );
+}
+
+function DisagreementCard(props: { collectionId: number; disagreement: Disagreement }) {
+  const { collectionId, disagreement } = props;
+  const { shape_id: shapeId, review_id: reviewId } = disagreement;
+  const showToast = useToast();
+  const deciding = useDecision(collectionId);
+  return (
+    <article className={styles.card} aria-label={disagreement.source_key}>
+      <h3 className={styles.name} title={disagreement.source_key}>
+        <Link href={`${roomAddress(collectionId, "work")}?shapes=${shapeId}`}>{disagreement.source_key}</Link>
+      </h3>
+      <p className={styles.reason}>
+        {percent(disagreement.area_agreement)} of the area agrees, parts overlap by{" "}
+        {percent(disagreement.part_iou)}, <Time at={disagreement.created_at} />
+      </p>
+      <LabelsPicture
+        words="Labels as they are now"
+        address={`/api/v1/shapes/${shapeId}/thumbnail?segmentation=confirmed&v=${disagreement.revision_id}`}
+      />
+      <ul className={styles.answers} aria-label="Whose labels">
+        {disagreement.answers.map((answer) => (
+          <li key={answer.id}>
+            <span className={styles.answerName}>{answer.person_name}</span>
+            {answer.is_medoid && <Badge>Closest to the others</Badge>}
+            <Button
+              size="small"
+              isBusy={
+                deciding.isPending &&
+                deciding.variables?.what === "choose" &&
+                deciding.variables.answerId === answer.id
+              }
+              onClick={() =>
+                deciding.mutate(
+                  { what: "choose", shapeId, reviewId, answerId: answer.id },
+                  {
+                    onSuccess: () =>
+                      showToast({
+                        message: `Labels of ${answer.person_name} are the shape's now`,
+                        tone: "good",
+                      }),
+                  },
+                )
+              }
+            >
+              Take these
+            </Button>
+          </li>
+        ))}
+      </ul>
+      {deciding.error && (
+        <Notice kind="error" title="This could not be done">
+          {deciding.error.message}
+        </Notice>
+      )}
+    </article>
+  );
+}

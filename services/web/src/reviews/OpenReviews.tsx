@@ -1,0 +1,58 @@
+import { useInfiniteQuery } from "@tanstack/react-query";
+import { ChevronLeft, ChevronRight } from "lucide-react";
+import { useEffect, useState } from "react";
+import { IconButton, Notice } from "../components";
+import { Asked } from "./Asked";
+import { ReviewCard } from "./ReviewCard";
+import styles from "./Reviews.module.css";
+import { reviewsQuery } from "./reviewRequests";
+
+/** Labels that wait for a second look, one after the other. */
+export function OpenReviews({ collectionId }: { collectionId: number }) {
+  const query = useInfiniteQuery(reviewsQuery(collectionId));
+  const [place, setPlace] = useState(0);
+  const items = query.data?.pages.flatMap((page) => page.items) ?? [];
+  const at = Math.min(place, Math.max(0, items.length - 1));
+  const { hasNextPage, fetchNextPage } = query;
+  const isNearEnd = at >= items.length - 2;
+  useEffect(() => {
+    if (isNearEnd && hasNextPage) void fetchNextPage();
+  }, [isNearEnd, hasNextPage, fetchNextPage]);
+  const shown = items[at];
+  return (
+    <Asked what="the reviews" query={query}>
+      {() =>
+        shown === undefined ? (
+          <Notice kind="empty" title="Nothing waits for a look">
+            Labels come here when they are to be checked, when people disagree, or when their mesh has
+            changed.
+          </Notice>
+        ) : (
+          <>
+            <div className={styles.steps}>
+              <IconButton
+                size="small"
+                label="Previous"
+                icon={<ChevronLeft />}
+                disabled={at === 0}
+                onClick={() => setPlace(at - 1)}
+              />
+              <p>
+                {at + 1} of {items.length}
+                {hasNextPage && " or more"}
+              </p>
+              <IconButton
+                size="small"
+                label="Next"
+                icon={<ChevronRight />}
+                disabled={at === items.length - 1}
+                onClick={() => setPlace(at + 1)}
+              />
+            </div>
+            <ReviewCard key={shown.review.id} collectionId={collectionId} {...shown} />
+          </>
+        )
+      }
+    </Asked>
+  );
+}

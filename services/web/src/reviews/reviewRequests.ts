@@ -1,0 +1,112 @@
+/** What leads ask the service about labels that wait for a second look, and decide about them. */
+import { infiniteQueryOptions, queryOptions, useMutation, useQueryClient } from "@tanstack/react-query";
+import { api, body, type Schemas } from "../api/client";
+
+export type Review = Schemas["ReviewOut"];
+export type Disagreement = Schemas["DisagreementOut"];
+/** interval : the low and the high end. */
+export type AcceptBatch = Omit<Schemas["AcceptBatchOut"], "interval"> & {
+  readonly interval: readonly number[] | null;
+};
+/** A review with the row of its shape. */
+export interface ReviewedShape {
+  readonly review: Review;
+  readonly row: Schemas["ShapeRow"];
+}
+
+const PAGE = 50;
+const ofCollection = (collectionId: number) => ({ collection_id: collectionId });
+
+/** Labels that wait, oldest first, each with its shape. */
+export const reviewsQuery = (collectionId: number) =>
+  infiniteQueryOptions({
+    queryKey: ["reviews", collectionId, "open"],
+    initialPageParam: 0,
+    queryFn: async ({ pageParam, signal }) => {
+      const path = ofCollection(collectionId);
+      const page = await body(
+        api.GET("/api/v1/collections/{collection_id}/reviews", {
+          params: { path, query: { after: pageParam, limit: PAGE } },
+          signal,
+        }),
+      );
+      return { items: await withRows(collectionId, page.items, signal), next: page.next };
+    },
+    getNextPageParam: ({ next }) => (next == null ? null : Number(next)),
+  });
+
+async function withRows(
+  collectionId: number,
+  reviews: readonly Review[],
+  signal: AbortSignal,
+): Promise<ReviewedShape[]> {
+  if (reviews.length === 0) return [];
+  const query = { id: [...new Set(reviews.map((review) => review.shape_id))] };
+  const params = { path: ofCollection(collectionId), query };
+  const found = await body(api.GET("/api/v1/collections/{collection_id}/shapes/rows", { params, signal }));
+  const rows = new Map(found.items.map((row) => [row.id, row]));
+  return reviews.flatMap((review) => {
+    const row = rows.get(review.shape_id);
+    return row ? [{ review, row }] : [];
+  });
+}
+
+/** Shapes whose independent labels differ too much. */
+export const disagreementsQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["reviews", collectionId, "disagreements"],
+    queryFn: () =>
+      body(
+        api.GET("/api/v1/collections/{collection_id}/disagreements", {
+          params: { path: ofCollection(collectionId), query: { limit: PAGE } },
+        }),
+      ),
+  });
+
+/** What was accepted in bulk, newest first. */
+export const acceptsQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["accepts", collectionId],
+    queryFn: () =>
+      body(
+        api.GET("/api/v1/collections/{collection_id}/accepts", {
+          params: { path: ofCollection(collectionId), query: { limit: PAGE } },
+        }),
+      ),
+  });
+
+export type Decision =
+  | { readonly what: "accept"; readonly shapeId: number; readonly reviewId: number }
+  | { readonly what: "reject"; readonly shapeId: number; readonly reviewId: number; readonly note: string }
+  | {
+      readonly what: "choose";
+      readonly shapeId: number;
+      readonly reviewId: number;
+      readonly answerId: number;
+    };
+
+function decide(decision: Decision): Promise<unknown> {
+  const path = { shape_id: decision.shapeId, review_id: decision.reviewId };
+  if (decision.what === "accept") {
+    return api.POST("/api/v1/shapes/{shape_id}/reviews/{review_id}/accept", { params: { path } });
+  }
+  if (decision.what === "choose") {
+    return api.POST("/api/v1/shapes/{shape_id}/reviews/{review_id}/choose", {
+      params: { path },
+      body: { answer_id: decision.answerId },
+    });
+  }
+  return api.POST("/api/v1/shapes/{shape_id}/reviews/{review_id}/reject", {
+    params: { path },
+    body: { note: decision.note, for_author: false },
+  });
+}
+
+export function useDecision(collectionId: number) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: decide,
+    // Also where it was refused: somebody else may have decided meanwhile.
+    onSettled: () => client.invalidateQueries({ queryKey: ["reviews", collectionId] }),
+  });
+}
