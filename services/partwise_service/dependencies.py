@@ -4,7 +4,7 @@ A handler names the least role that may call it (`Annotator` < `Reviewer` < `Ope
 shapes outside the caller's scope do not exist for them: 404, the same as for ids that were never given.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Annotated
 
 from fastapi import Depends, Request, Security
@@ -24,7 +24,10 @@ _bearer = HTTPBearer(auto_error=False, description="A token that `partwise token
 _cookie = APIKeyCookie(name=SESSION_COOKIE, auto_error=False, description="The session that /login has begun.")
 
 
-def service(request: Request) -> Service:
+# What waits for nothing is `async`: it needs no thread, and a thread costs more than all that these do.
+
+
+async def service(request: Request) -> Service:
     """What is open while the application runs."""
     found: Service = request.app.state.service
     return found
@@ -33,7 +36,7 @@ def service(request: Request) -> Service:
 ServiceDep = Annotated[Service, Depends(service)]
 
 
-def workspace(open_service: ServiceDep) -> Workspace:
+async def workspace(open_service: ServiceDep) -> Workspace:
     """The workspace that is served."""
     return open_service.workspace
 
@@ -41,7 +44,7 @@ def workspace(open_service: ServiceDep) -> Workspace:
 WorkspaceDep = Annotated[Workspace, Depends(workspace)]
 
 
-def catalog(served: WorkspaceDep) -> Catalog:
+async def catalog(served: WorkspaceDep) -> Catalog:
     """The workspace's catalog."""
     return served.catalog
 
@@ -93,10 +96,10 @@ def client_address(request: Request) -> str:
     return request.client.host if request.client is not None else "unknown"
 
 
-def require(role: Role) -> Callable[[Identity], Identity]:
+def require(role: Role) -> Callable[[Identity], Awaitable[Identity]]:
     """A dependency that lets callers of at least this role pass."""
 
-    def at_least(caller: Caller) -> Identity:
+    async def at_least(caller: Caller) -> Identity:
         require_role(caller, role)
         return caller
 

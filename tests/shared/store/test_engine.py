@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from sqlalchemy import event
+from sqlalchemy import create_engine, event, text
 
 from partwise.errors import ConfigError, ConflictError, StoreError
 from partwise.store import engine as engines
@@ -134,3 +134,16 @@ def test_other_urls_are_refused(url: str, words: str) -> None:
 
 def test_postgres_is_spoken_through_psycopg() -> None:
     assert parsed_url("postgresql://host/name").drivername == "postgresql+psycopg"
+
+
+def test_a_connection_that_the_server_closed_while_it_rested_is_replaced(
+    postgres_catalog: SqlCatalog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engines, "_TRUSTED_FOR_S", 0.0)
+    postgres_catalog.list_people()  # from now on a connection rests
+    other = create_engine(postgres_catalog._engine.url, isolation_level="AUTOCOMMIT")
+    of_others = "FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"
+    with other.connect() as connection:
+        assert connection.execute(text(f"SELECT pg_terminate_backend(pid) {of_others}")).all()
+    other.dispose()
+    assert list(postgres_catalog.list_people()) == []

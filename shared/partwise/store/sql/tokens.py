@@ -7,7 +7,7 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import Connection, Row, Select, insert, or_, select, update
+from sqlalchemy import Connection, Row, Select, bindparam, insert, or_, select, update
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
@@ -59,15 +59,7 @@ def _refuse_unknown_collections(connection: Connection, scope: Sequence[int]) ->
 def authenticate(connection: Connection, secret: str, now: datetime) -> Token | None:
     if not secret.startswith(SECRET_PREFIX):
         return None
-    parent = t.token.alias("parent")
-    query = (
-        _tokens()
-        .join(parent, parent.c.id == t.token.c.parent_id, isouter=True)
-        .where(t.token.c.secret_sha256 == _sha256(secret))
-        .where(t.token.c.revoked_at.is_(None), t.token.c.expires_at > now)
-        .where(or_(t.token.c.parent_id.is_(None), (parent.c.revoked_at.is_(None)) & (parent.c.expires_at > now)))
-    )
-    row = connection.execute(query).first()
+    row = connection.execute(_GOOD_TOKEN, {"sha256": _sha256(secret), "now": now}).first()
     return None if row is None else _token(row)
 
 
@@ -152,3 +144,20 @@ def _tokens() -> Select[Any]:
 def _token(row: Row[Any]) -> Token:
     scope = None if row.scope is None else tuple(row.scope)
     return Token(**{**row._mapping, "role": Role(row.role), "scope": scope})
+
+
+def _good_token() -> Select[Any]:
+    """The token of a secret that is good now; a session no longer than the token it was begun with."""
+    parent, now = t.token.alias("parent"), bindparam("now", type_=t.token.c.expires_at.type)
+    is_parent_good = (parent.c.revoked_at.is_(None)) & (parent.c.expires_at > now)
+    return (
+        _tokens()
+        .join(parent, parent.c.id == t.token.c.parent_id, isouter=True)
+        .where(t.token.c.secret_sha256 == bindparam("sha256"))
+        .where(t.token.c.revoked_at.is_(None), t.token.c.expires_at > now)
+        .where(or_(t.token.c.parent_id.is_(None), is_parent_good))
+    )
+
+
+_GOOD_TOKEN = _good_token()
+"""Built once: every request begins with it."""
