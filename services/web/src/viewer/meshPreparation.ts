@@ -4,6 +4,7 @@ import { MeshBVH, type SerializedBVH } from "three-mesh-bvh";
 import { cornerNormals } from "../geometry/cornerNormals";
 import { buildFaceGraph, type FaceGraphArrays } from "../geometry/faceGraph";
 import { type FaceMeasures, measureFaces } from "../geometry/faceMeasures";
+import { isSolid } from "../geometry/solid";
 
 export interface MeshArrays {
   readonly vertices: Float32Array;
@@ -15,14 +16,17 @@ export interface Preparation {
   readonly graph: FaceGraphArrays;
   readonly normals: Int16Array;
   readonly bvh: SerializedBVH;
+  readonly isSolid: boolean;
 }
 
 export function prepared({ vertices, faces }: MeshArrays): Preparation {
   const measures = measureFaces(vertices, faces);
   const bvh = new MeshBVH(pickGeometry(vertices, faces), { indirect: true });
+  const graph = buildFaceGraph(faces, vertices.length / 3);
   return {
     measures,
-    graph: buildFaceGraph(faces, vertices.length / 3),
+    graph,
+    isSolid: isSolid(vertices, faces, graph.opposite),
     normals: cornerNormals(vertices, faces, measures.crosses),
     bvh: { ...MeshBVH.serialize(bvh, { cloneBuffers: false }), index: null },
   };

@@ -9,6 +9,8 @@ export interface PreparedMesh {
   /** Shading normals, four int16 to a corner. */
   readonly normals: Int16Array;
   readonly bvh: MeshBVH;
+  /** Nobody looks at its inside: only the outside is drawn and picked. */
+  readonly isSolid: boolean;
 }
 
 interface Answer {
@@ -30,7 +32,7 @@ export async function prepareMesh(mesh: SurfaceMesh): Promise<PreparedMesh> {
     typeof Worker === "undefined" ? prepared(mesh) : await preparedElsewhere({ vertices, faces });
   mesh.adopt(preparation.measures, preparation.graph);
   const bvh = MeshBVH.deserialize(preparation.bvh, pickGeometry(vertices, faces), { setIndex: false });
-  return { mesh, normals: preparation.normals, bvh };
+  return { mesh, normals: preparation.normals, bvh, isSolid: preparation.isSolid };
 }
 
 function preparedElsewhere(arrays: { vertices: Float32Array; faces: Uint32Array }): Promise<Preparation> {

@@ -5,6 +5,7 @@ import {
   Color,
   DataTexture,
   DoubleSide,
+  FrontSide,
   GLSL3,
   Mesh,
   type Ray,
@@ -41,20 +42,22 @@ export interface ModelOptions {
 export class ShapeModel {
   readonly mesh: SurfaceMesh;
   readonly scene = new Scene();
-  readonly since: number | null;
   /** Called whenever something must be drawn anew; the stage listens. */
   readonly changed = new Set<() => void>();
   readonly #prepared: PreparedMesh;
+  #since: number | null;
   readonly #geometry: BufferGeometry;
   readonly #texture: DataTexture;
   readonly #states: FaceStates;
+  readonly #side: typeof FrontSide | typeof DoubleSide;
   readonly #uniforms: Uniforms;
   readonly #material: ShaderMaterial;
 
   constructor(prepared: PreparedMesh, { since }: ModelOptions = {}) {
     this.#prepared = prepared;
     this.mesh = prepared.mesh;
-    this.since = since ?? null;
+    this.#side = prepared.isSolid ? FrontSide : DoubleSide;
+    this.#since = since ?? null;
     const height = Math.ceil(this.mesh.nFaces / STATES_WIDTH);
     this.#states = new FaceStates(this.mesh.graph, 4 * STATES_WIDTH * height, () => this.#upload());
     this.#texture = new DataTexture(this.#states.bytes, STATES_WIDTH, height, RGBAFormat, UnsignedByteType);
@@ -64,7 +67,7 @@ export class ShapeModel {
       glslVersion: GLSL3,
       vertexShader: VERTEX_SHADER,
       fragmentShader: FRAGMENT_SHADER,
-      side: DoubleSide,
+      side: this.#side,
       uniforms: this.#uniforms,
     });
     this.#geometry = shownGeometry(prepared);
@@ -124,9 +127,9 @@ export class ShapeModel {
     this.#draw();
   }
 
-  /** The first face along a ray in the mesh's coordinates, seen from either side. */
+  /** The first face along a ray in the mesh's coordinates, of those that are drawn. */
   hit(ray: Ray): Hit | null {
-    const found = this.#prepared.bvh.raycastFirst(ray, DoubleSide);
+    const found = this.#prepared.bvh.raycastFirst(ray, this.#side);
     if (found?.faceIndex === undefined || found.faceIndex === null) return null;
     return { face: found.faceIndex, point: found.point.toArray() };
   }
@@ -136,6 +139,13 @@ export class ShapeModel {
     this.#uniforms.uUp.value.copy(up);
     this.#uniforms.uPixel.value = pixelRatio;
     this.#material.uniformsNeedUpdate = true;
+  }
+
+  /** After the shape was drawn: the first time, says how long the person waited for it. */
+  wasDrawn(): void {
+    if (this.#since === null) return;
+    performance.measure("partwise:first-paint", { start: this.#since, end: performance.now() });
+    this.#since = null;
   }
 
   /** Frees what the graphics card holds. */

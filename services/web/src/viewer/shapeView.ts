@@ -57,7 +57,6 @@ export class ShapeView {
   readonly #controls: readonly { remove(): void }[];
   #model: ShapeModel | null = null;
   #pose: Pose = { orientation: namedOrientation("threeQuarter"), offset: new Vector3(), distance: 2.4 };
-  #hasDrawn = false;
 
   constructor(element: HTMLElement, { up, manner = "turntable" }: ViewOptions, stage: StageOfView) {
     this.element = element;
@@ -93,7 +92,6 @@ export class ShapeView {
     this.#model?.changed.delete(this.#stage.invalidate);
     model?.changed.add(this.#stage.invalidate);
     this.#model = model;
-    this.#hasDrawn = false;
     if (model !== null && !keepsPose) this.frame();
     this.#stage.invalidate();
   }
@@ -165,10 +163,7 @@ export class ShapeView {
     const up = new Vector3(0, 1, 0).applyQuaternion(this.#pose.orientation.clone().invert());
     model.aim(up, renderer.getPixelRatio());
     renderer.render(model.scene, this.#camera);
-    if (!this.#hasDrawn && model.since !== null) {
-      performance.measure("partwise:first-paint", { start: model.since, end: performance.now() });
-    }
-    this.#hasDrawn = true;
+    model.wasDrawn();
   }
 
   /** Ends the view. The element stays. */
