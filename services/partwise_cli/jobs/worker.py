@@ -5,7 +5,6 @@ import os
 import secrets
 import socket
 import threading
-import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from datetime import UTC, datetime, timedelta
 
@@ -21,8 +20,6 @@ from partwise_cli.jobs.work import Handler, Work
 
 logger = logging.getLogger(__name__)
 
-KEEP_EVENTS = timedelta(days=7)
-PRUNE_EVERY_S = 3600.0
 BACKOFF = 5
 """Times as long is waited after each attempt at a job that failed for reasons outside of it."""
 
@@ -59,7 +56,6 @@ class Worker:
         self._collection_id = collection_id
         self._cluster = cluster
         self._on_job = on_job
-        self._pruned_at = -PRUNE_EVERY_S
         self._never = threading.Event()
 
     def run(self, *, once: bool = False) -> None:
@@ -85,7 +81,7 @@ class Worker:
 
     def work_once(self) -> bool:
         """Claims the next job and does it; whether there was one. Jobs of owners that are silent go back before."""
-        self._look_after_the_rest()
+        self._requeue_lost()
         job = self._catalog.claim_job(self.owner, self._kinds, collection_id=self._collection_id)
         if job is None:
             return False
@@ -94,14 +90,10 @@ class Worker:
         self._on_job(self._catalog.job(job.id))
         return True
 
-    def _look_after_the_rest(self) -> None:
+    def _requeue_lost(self) -> None:
         silent = timedelta(seconds=self._workspace.config.jobs.lost_after_s)
         for lost in self._catalog.requeue_lost_jobs(datetime.now(UTC) - silent):
             logger.warning("job %d: %s", lost.id, lost.progress.message)
-        if time.monotonic() - self._pruned_at >= PRUNE_EVERY_S:
-            self._pruned_at = time.monotonic()
-            while self._catalog.prune_events(datetime.now(UTC) - KEEP_EVENTS):
-                pass
 
     def _do(self, job: Job) -> None:
         try:

@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from partwise.errors import NotEnoughDataError, StoreError, WorkerError
-from partwise.store.records import EventKind, JobKind, JobState, NewEvent
+from partwise.store.records import JobKind, JobState
 from partwise.store.sql_catalog import SqlCatalog
 from partwise_cli.jobs.stopping import JobStoppedError, StopReason
 from partwise_cli.jobs.work import Outcome
@@ -206,10 +206,3 @@ def test_a_worker_says_what_it_begins_and_how_it_ends(worker, enqueue) -> None:
     enqueue(JobKind.EXPORT)
     worker({JobKind.EXPORT: done}, on_job=lambda job: told.append(job.state)).run(once=True)
     assert told == [JobState.RUNNING, JobState.DONE]
-
-
-def test_old_events_are_forgotten(worker, workspace, monkeypatch) -> None:
-    monkeypatch.setattr("partwise_cli.jobs.worker.KEEP_EVENTS", timedelta(seconds=-60))
-    workspace.catalog.add_event(NewEvent(EventKind.PEOPLE, None))
-    worker({JobKind.EXPORT: done}).run(once=True)
-    assert workspace.catalog.events(after=0) == []
