@@ -23,6 +23,7 @@ export function Dialog({ title, onClose, children, footer, size = "normal", isAl
   useEffect(() => {
     const shown = dialog.current;
     shown?.showModal();
+    firstToFocus(shown)?.focus();
     return () => shown?.close();
   }, []);
   return (
@@ -53,5 +54,13 @@ export function Dialog({ title, onClose, children, footer, size = "normal", isAl
         {footer !== undefined && <footer className={styles.footer}>{footer}</footer>}
       </div>
     </dialog>
+  );
+}
+
+/** What people came for: the first field, else the first answer. The browser itself would take the cross. */
+function firstToFocus(dialog: HTMLDialogElement | null): HTMLElement | null | undefined {
+  return (
+    dialog?.querySelector<HTMLElement>("input:not([type=hidden], :disabled), select, textarea") ??
+    dialog?.querySelector<HTMLElement>("footer button")
   );
 }

@@ -4,9 +4,13 @@ import { Button, Notice, Skeleton } from "../../components";
 import { FailuresPanel } from "./failures/FailuresPanel";
 import { JobsPanel } from "./jobs/JobsPanel";
 import { KeyFigures } from "./KeyFigures";
+import { StoragePanel } from "./machines/StoragePanel";
+import { WorkersPanel } from "./machines/WorkersPanel";
 import styles from "./OperationsRoom.module.css";
+import { PeoplePanel } from "./people/PeoplePanel";
 import { LeasesPanel } from "./queue/LeasesPanel";
 import { QueuePanel } from "./queue/QueuePanel";
+import { RoundsPanel } from "./rounds/RoundsPanel";
 import { StagesPanel } from "./stages/StagesPanel";
 import { useOpsHistory } from "./useOpsHistory";
 
@@ -34,6 +38,10 @@ export function OperationsRoom({ collectionId }: RoomProps) {
         <FailuresPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
         <QueuePanel ops={ops.data} history={history} />
         <LeasesPanel collectionId={collectionId} />
+        <PeoplePanel collectionId={collectionId} className={styles.whole} />
+        <RoundsPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
+        <WorkersPanel ops={ops.data} />
+        <StoragePanel ops={ops.data} />
       </div>
     </div>
   );

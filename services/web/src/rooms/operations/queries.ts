@@ -84,3 +84,21 @@ export const shapeQuery = (shapeId: number) =>
     queryKey: ["shape", shapeId, "card"],
     queryFn: () => body(api.GET("/api/v1/shapes/{shape_id}", { params: { path: { shape_id: shapeId } } })),
   });
+
+export const roundsQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["rounds", collectionId],
+    queryFn: () =>
+      body(
+        api.GET("/api/v1/collections/{collection_id}/rounds", {
+          params: { path: inCollection(collectionId) },
+        }),
+      ),
+  });
+
+export const peopleOpsQuery = (collectionId: number, days: number) =>
+  queryOptions({
+    queryKey: ["ops people", collectionId, days],
+    queryFn: () =>
+      body(api.GET("/api/v1/ops/people", { params: { query: { collection: collectionId, days } } })),
+  });

@@ -7,6 +7,8 @@ const HEIGHT_PX = 168;
 /** One point makes no line, and no sensible axis. */
 const MIN_POINTS = 2;
 const Y_AXIS_PX = 52;
+const MINUTE_S = 60;
+const X_AXIS_PX = 28;
 
 /** A chart in an element: made when it is connected, drawn anew when its data, its width or the scheme changes. */
 export class LineChart {
@@ -91,6 +93,14 @@ export class LineChart {
       ],
     };
   }
+}
+
+/** Times of day, with seconds where the marks are closer than a minute. */
+function clockTimes(timesS: readonly number[]): string[] {
+  const [first = 0, second = first + MINUTE_S] = timesS;
+  const format: Intl.DateTimeFormatOptions = { hour: "2-digit", minute: "2-digit" };
+  if (second - first < MINUTE_S) format.second = "2-digit";
+  return timesS.map((atS) => new Date(atS * 1000).toLocaleTimeString(undefined, format));
 }
 
 function namesOf(data: ChartData): string {

@@ -43,7 +43,7 @@ export function failureColumns({ rows, chosen, choose, onShow }: FailureColumns)
       id: "reason",
       header: "Reason",
       isWide: true,
-      cell: ({ kind, message }) => <Reason kind={kind} message={message} />,
+      cell: (failure) => <Reason failure={failure} />,
     },
     { id: "attempts", header: "Tries", isNumber: true, cell: ({ attempts }) => whole(attempts) },
     { id: "at", header: "Gave up", cell: ({ at }) => <Time at={at} /> },
@@ -59,10 +59,13 @@ export function failureColumns({ rows, chosen, choose, onShow }: FailureColumns)
   ];
 }
 
-function Reason({ kind, message }: Pick<Failure, "kind" | "message">) {
+/** Reasons begin with the file's name, which stands beside them already. */
+function Reason({ failure: { kind, message, source_key } }: { failure: Failure }) {
+  const prefix = `${source_key}: `;
   return (
     <span title={message}>
-      <strong>{FAILURE_WORDS[kind].name}:</strong> {message}
+      <strong>{FAILURE_WORDS[kind].name}:</strong>{" "}
+      {message.startsWith(prefix) ? message.slice(prefix.length) : message}
     </span>
   );
 }

@@ -29,6 +29,13 @@ const COLUMNS: readonly Column<Job>[] = [
   { id: "actions", header: <span className="unseen">Actions</span>, cell: (job) => <JobActions job={job} /> },
 ];
 
+const IDLE = (
+  <>
+    Jobs wait and none runs. If it stays so, start a worker where the service runs: <code>partwise work</code>
+    .
+  </>
+);
+
 /** What workers do and were asked to do, newest first. */
 export function JobsPanel({
   collectionId,
@@ -38,15 +45,23 @@ export function JobsPanel({
   className?: string | undefined;
 }) {
   const jobs = useInfiniteQuery(jobsQuery(collectionId));
+  const rows = jobs.data?.pages.flatMap((page) => page.items) ?? [];
+  const isIdle = rows.some(isIn("pending")) && !rows.some(isIn("running"));
   return (
-    <Panel title="Jobs" className={className} actions={<StartJob collectionId={collectionId} />} isFlush>
+    <Panel
+      title="Jobs"
+      className={className}
+      description={isIdle ? IDLE : undefined}
+      actions={<StartJob collectionId={collectionId} />}
+      isFlush
+    >
       {jobs.error && !jobs.data ? (
         <PanelError what="Jobs" error={jobs.error} onRetry={jobs.refetch} />
       ) : (
         <DataTable
           caption="Jobs"
           columns={COLUMNS}
-          rows={jobs.data?.pages.flatMap((page) => page.items) ?? []}
+          rows={rows}
           keyOf={(job) => job.id}
           empty={
             jobs.isPending
@@ -59,4 +74,8 @@ export function JobsPanel({
       <LoadMore pages={jobs} />
     </Panel>
   );
+}
+
+function isIn(state: Job["state"]) {
+  return (job: Job) => job.state === state;
 }

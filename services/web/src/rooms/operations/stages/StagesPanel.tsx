@@ -7,10 +7,9 @@ import type { ChartData } from "../charts/chartData";
 import type { Sample } from "../history";
 import type { Ops } from "../queries";
 import { stageMeaning, stageName } from "../stageWords";
-import { etaInSeconds, shapesBefore } from "./eta";
 import styles from "./StagesPanel.module.css";
 
-type Stage = Ops["stages"][number] & { nReaching: number };
+type Stage = Ops["stages"][number];
 
 interface StagesPanelProps {
   ops: Ops | undefined;
@@ -20,12 +19,6 @@ interface StagesPanelProps {
 
 /** Each stage's progress, pace and end, and how the pace went. */
 export function StagesPanel({ ops, history, className }: StagesPanelProps) {
-  const nShapes = Object.values(ops?.states ?? {}).reduce((total, n) => total + n, 0);
-  const reaching = shapesBefore(ops?.stages ?? [], nShapes);
-  const stages = (ops?.stages ?? []).map((stage, index) => ({
-    ...stage,
-    nReaching: reaching[index] ?? nShapes,
-  }));
   const chart = useMemo(() => paceChart(ops, history), [ops, history]);
   return (
     <Panel
@@ -39,7 +32,7 @@ export function StagesPanel({ ops, history, className }: StagesPanelProps) {
           <DataTable
             caption="Stages"
             columns={COLUMNS}
-            rows={stages}
+            rows={ops.stages}
             keyOf={(stage) => stage.stage}
             empty="Nothing has run yet. Add files in the settings; stages begin by themselves."
           />
@@ -58,8 +51,6 @@ export function StagesPanel({ ops, history, className }: StagesPanelProps) {
   );
 }
 
-const left = ({ done, failed, nReaching }: Stage) => Math.max(0, nReaching - done - failed);
-
 const COLUMNS: readonly Column<Stage>[] = [
   {
     id: "stage",
@@ -70,11 +61,12 @@ const COLUMNS: readonly Column<Stage>[] = [
     id: "progress",
     header: "Progress",
     isWide: true,
-    cell: ({ stage, done, nReaching }) => (
-      <Progress label={`${stageName(stage)}, done`} value={done} max={nReaching} />
+    cell: ({ stage, done, remaining }) => (
+      <Progress label={`${stageName(stage)}, done`} value={done} max={done + remaining} />
     ),
   },
   { id: "done", header: "Done", isNumber: true, cell: ({ done }) => whole(done) },
+  { id: "remaining", header: "Waiting", isNumber: true, cell: ({ remaining }) => whole(remaining) },
   {
     id: "failed",
     header: "Failed",
@@ -86,10 +78,9 @@ const COLUMNS: readonly Column<Stage>[] = [
     id: "eta",
     header: "Time left",
     isNumber: true,
-    cell: (stage) => {
-      if (left(stage) === 0) return "done";
-      const seconds = etaInSeconds(left(stage), stage.per_min);
-      return seconds === null ? <span title="Nothing was done lately.">–</span> : durationInWords(seconds);
+    cell: ({ remaining, eta_s }) => {
+      if (remaining === 0) return "done";
+      return eta_s === null ? <span title="Nothing was done lately.">–</span> : durationInWords(eta_s);
     },
   },
 ];

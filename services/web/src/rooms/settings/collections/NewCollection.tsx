@@ -64,7 +64,6 @@ function NewCollectionDialog({ onClose }: { onClose: () => void }) {
           value={name}
           maxLength={200}
           required
-          autoFocus
           onChange={(event) => setName(event.target.value)}
         />
         <Field

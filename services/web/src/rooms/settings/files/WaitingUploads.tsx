@@ -3,13 +3,17 @@ import { api } from "../../../api/client";
 import type { Upload } from "../../../api/upload";
 import { Button, type Column, DataTable, Panel, Time, useToast } from "../../../components";
 import { bytes } from "../../../components/numbers";
-import { uploadsQuery } from "./queries";
+import { type Ingest, ingestsQuery, uploadsQuery } from "./queries";
 import { useIngest } from "./useIngest";
 
-/** Uploads that are not taken in yet, such as when asking for it failed. None: nothing is shown. */
+/** Uploads that no job is about to take in, such as when asking for one failed. None: nothing is shown. */
 export function WaitingUploads({ collectionId }: { collectionId: number }) {
   const uploads = useQuery(uploadsQuery(collectionId));
-  const rows = uploads.data?.items ?? [];
+  const ingests = useQuery(ingestsQuery(collectionId));
+  const asked = new Set(ingests.data?.filter(isUnderWay).map((job) => job.parameters.upload_id));
+  const rows = ingests.data
+    ? (uploads.data?.items ?? []).filter((upload) => !asked.has(upload.upload_id))
+    : [];
   const columns: readonly Column<Upload>[] = [
     { id: "name", header: "File", isWide: true, cell: ({ name }) => <span title={name}>{name}</span> },
     { id: "size", header: "Size", isNumber: true, cell: ({ n_bytes }) => bytes(n_bytes) },
@@ -25,7 +29,7 @@ export function WaitingUploads({ collectionId }: { collectionId: number }) {
   return (
     <Panel
       title="Waiting uploads"
-      description="They are on the service and are deleted once a worker has taken them in, or when their time is up."
+      description="They are on the service, and nobody has asked for them to be taken in, or it failed. They are deleted when their time is up."
       isFlush
     >
       <DataTable
@@ -37,6 +41,10 @@ export function WaitingUploads({ collectionId }: { collectionId: number }) {
       />
     </Panel>
   );
+}
+
+function isUnderWay({ state }: Ingest): boolean {
+  return state === "pending" || state === "running";
 }
 
 function UploadActions({ collectionId, upload }: { collectionId: number; upload: Upload }) {

@@ -25,7 +25,9 @@ export function NumberSetting({
 }: NumberSettingProps) {
   const [typed, setTyped] = useState({ text: String(value), value });
   const text = typed.value === value ? typed.text : String(value); // the value was changed from elsewhere
-  const isGood = isWholeIn(text, min, max);
+  const refusal = isWholeIn(text, min, max)
+    ? ""
+    : `A whole number from ${min.toLocaleString("en")} to ${max.toLocaleString("en")}.`;
   return (
     <Input
       label={label}
@@ -34,9 +36,9 @@ export function NumberSetting({
       inputMode="numeric"
       value={text}
       disabled={isDisabled}
-      error={
-        isGood ? null : `A whole number from ${min.toLocaleString("en")} to ${max.toLocaleString("en")}.`
-      }
+      error={refusal}
+      // The browser does not send the form before it is right.
+      ref={(input) => input?.setCustomValidity(refusal)}
       {...(unit !== undefined && { unit })}
       onChange={(event) => {
         const next = event.target.value;

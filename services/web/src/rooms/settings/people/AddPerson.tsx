@@ -68,7 +68,6 @@ function AddDialog({ onClose, onAdded }: { onClose: () => void; onAdded: (person
           hint="As colleagues know them: it is shown beside their labels."
           value={name}
           maxLength={200}
-          autoFocus
           error={adding.error?.message}
           onChange={(event) => setName(event.target.value)}
         />
