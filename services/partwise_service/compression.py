@@ -9,7 +9,7 @@ import gzip
 from collections.abc import Sequence
 from typing import Final
 
-from numcodecs.zstd import compress as compress_zstd
+from numcodecs.zstd import compress as compress_zstd  # type: ignore[import-untyped]  # ships no types
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 

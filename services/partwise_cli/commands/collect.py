@@ -53,7 +53,9 @@ def init(
     from partwise.workspace.workspace import init_collection
 
     names = [name.strip() for name in parts.split(",") if name.strip()]
-    init_collection(ws, collection, names, asdict(CollectionSettings(up=up, working_faces=faces, remesh=remesh)))
+    given = {"up": up, "working_faces": faces, "remesh": remesh}
+    CollectionSettings(up=up, working_faces=faces, remesh=remesh)  # raises for what does not fit
+    init_collection(ws, collection, names, given)
     typer.echo(f"{ws}: collection {collection!r} with {counted(len(names), 'part')}: {', '.join(names)}")
 
 

@@ -71,13 +71,17 @@ def test_settings_are_shown(invoke, empty: Path) -> None:
 
 def test_settings_are_changed_and_say_what_comes_of_it(invoke, empty: Path) -> None:
     result = invoke("settings", empty, "--faces", "20000")
-    assert "│ faces   │ 20000 │ 10000  │" in result.stdout
+    assert "│ faces            │ 20000 │ 10000  │" in result.stdout
     assert "with the next `partwise preprocess`" in result.stdout
-    assert json.loads(invoke("settings", empty, "--json").stdout) == {
-        "up": "y",
-        "working_faces": 20_000,
-        "remesh": "auto",
-    }
+    shown = json.loads(invoke("settings", empty, "--json").stdout)
+    assert (shown["up"], shown["working_faces"], shown["remesh"], shown["train_after"]) == ("y", 20_000, "auto", 5)
+
+
+def test_settings_of_the_queue_are_changed_alike(invoke, empty: Path) -> None:
+    options = ("--honeypot-share", "0.1", "--review", "--labels-per-shape", "2", "--json")
+    shown = json.loads(invoke("settings", empty, *options).stdout)
+    assert (shown["honeypot_share"], shown["review"], shown["labels_per_shape"]) == (0.1, True, 2)
+    assert isinstance(invoke("settings", empty, "--agreement", "1.5").exception, ParameterError)
 
 
 def test_a_change_of_pictures_alone_needs_no_new_meshes(invoke, empty: Path) -> None:
