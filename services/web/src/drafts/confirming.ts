@@ -16,7 +16,6 @@ export type ConfirmOutcome =
   | { readonly kind: "refused"; readonly why: string };
 
 interface StaleState {
-  readonly n_strokes: number;
   readonly base_revision: number | null;
   readonly seen_revision: number | null;
   readonly head_revision: number | null;
@@ -41,15 +40,15 @@ export async function confirmDraft(
 async function outcomeOf(error: unknown, sender: StrokeSender, nStrokes: number): Promise<ConfirmOutcome> {
   const failure = failureOf(error);
   if (failure.kind === "passing") return { kind: "unreachable", why: failure.why };
-  if (failure.kind !== "stale") return { kind: "refused", why: failure.why };
-  const state = (error as Problem).document.state as StaleState;
-  if (state.n_strokes !== nStrokes) {
-    await sender.refresh();
-    return { kind: "went-on", why: failure.why };
-  }
-  const { head_revision: head } = state;
-  if (head !== null && head !== state.seen_revision && head !== state.base_revision) {
-    return { kind: "unseen-labels", revisionId: head, why: failure.why };
-  }
-  return { kind: "refused", why: failure.why };
+  const head = failure.kind === "stale" ? unseenHead((error as Problem).document.state as StaleState) : null;
+  if (head !== null) return { kind: "unseen-labels", revisionId: head, why: failure.why };
+  // strokes from elsewhere also show as labels of another checksum
+  await sender.refresh();
+  const wentOn = sender.strokes.length !== nStrokes || sender.state.get().kind === "conflict";
+  return { kind: wentOn ? "went-on" : "refused", why: failure.why };
+}
+
+function unseenHead(state: StaleState): number | null {
+  const { head_revision: head, seen_revision: seen, base_revision: base } = state;
+  return head === seen || head === base ? null : head;
 }

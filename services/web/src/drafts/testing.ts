@@ -109,7 +109,9 @@ export class FakeService implements DraftTransport {
     await this.answer(new AbortController().signal, () => {
       if (this.confirmedAs !== null && this.confirmedAs === labelsSha256) return;
       if (this.outcome !== null) throw conflict(`draft is ${this.outcome}`);
-      if (nStrokes !== this.log.length || this.head !== this.seen) throw this.stale();
+      const isElse = nStrokes !== this.log.length;
+      if (isElse) throw conflict("labels must be as the annotator saw them"); // replaying comes before counting
+      if (this.head !== this.seen) throw this.stale();
       this.outcome = "confirmed";
       this.confirmedAs = labelsSha256;
     });

@@ -22,6 +22,9 @@ export function StageNotices({ desk, held, open, confirming }: StageNoticesProps
   const leave = () => void desk.leave(held);
   return (
     <>
+      <p className="unseen" role="status">
+        {confirming.lastConfirmed !== null && `${confirming.lastConfirmed} is confirmed.`}
+      </p>
       {refused.length > 0 && (
         <Notice
           kind="warning"

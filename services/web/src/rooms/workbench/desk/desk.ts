@@ -36,6 +36,8 @@ export class Desk {
 
   /** Takes up what is held already; shapes by name, or else the next of the queue. */
   async start(named: readonly number[]): Promise<void> {
+    await Promise.resolve(); // who leaves at once, as a page that is mounted twice, claims nothing
+    if (this.isClosed) return;
     const since = performance.now();
     await this.attempt(async () => {
       const refused: RefusedClaim[] = [];

@@ -8,6 +8,8 @@ export interface Confirming {
   readonly isBusy: boolean;
   /** Labels that somebody else confirmed meanwhile; null if none. */
   readonly unseenRevision: number | null;
+  /** The shape before this one. */
+  readonly lastConfirmed: string | null;
   confirm(): Promise<void>;
   confirmOver(): Promise<void>;
 }
@@ -15,6 +17,7 @@ export interface Confirming {
 export function useConfirming(desk: Desk, held: HeldShape): Confirming {
   const showToast = useToast();
   const [unseen, setUnseen] = useState<{ held: HeldShape; revisionId: number } | null>(null);
+  const [lastConfirmed, setLastConfirmed] = useState<string | null>(null);
   const [busyWith, setBusyWith] = useState<HeldShape | null>(null);
   const isAsking = useRef(false);
 
@@ -24,8 +27,7 @@ export function useConfirming(desk: Desk, held: HeldShape): Confirming {
     setBusyWith(held);
     try {
       const outcome = await desk.confirm(held);
-      if (outcome.kind === "confirmed")
-        showToast({ message: `${held.lease.source_key} is confirmed.`, tone: "good" });
+      if (outcome.kind === "confirmed") setLastConfirmed(held.lease.source_key);
       else if (outcome.kind === "unseen-labels") setUnseen({ held, revisionId: outcome.revisionId });
       else showToast({ message: wordsOf(outcome), tone: "bad" });
     } finally {
@@ -46,6 +48,7 @@ export function useConfirming(desk: Desk, held: HeldShape): Confirming {
   };
   return {
     isBusy: busyWith === held,
+    lastConfirmed,
     unseenRevision: unseen?.held === held ? unseen.revisionId : null,
     confirm,
     confirmOver,

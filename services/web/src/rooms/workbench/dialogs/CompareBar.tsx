@@ -1,6 +1,7 @@
 import { type ReactNode, useEffect, useState } from "react";
 import { Notice, Segmented } from "../../../components";
 import type { OpenShape } from "../shape/openShape";
+import styles from "./CompareBar.module.css";
 
 type Side = "mine" | "theirs";
 
@@ -24,7 +25,7 @@ export function CompareBar({ open, title, theirs, theirName, children, actions }
   }, [open, side, theirs]);
   return (
     <Notice kind="warning" title={title} actions={actions}>
-      <p>{children}</p>
+      <p className={styles.text}>{children}</p>
       <Segmented<Side>
         label="Version shown"
         size="small"

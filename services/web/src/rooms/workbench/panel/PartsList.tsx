@@ -1,5 +1,5 @@
 import { useMemo } from "react";
-import { count, percent } from "../../../components/numbers";
+import { count } from "../../../components/numbers";
 import { useObservableOr } from "../../../drafts/useObservable";
 import { partShares } from "../../../labels/partShares";
 import { keyOfPart, type Part, UNLABELLED_NAME } from "../parts";
@@ -43,7 +43,7 @@ export function PartsList({ parts, part, open, onPick }: PartsListProps) {
             />
             <span className={styles.swatch} style={{ background: colour }} />
             <span className={styles.name}>{name}</span>
-            <span className={styles.share}>{open === null ? "" : percent(share.area)}</span>
+            <span className={styles.share}>{open === null ? "" : `${(100 * share.area).toFixed(1)}%`}</span>
             <span className={styles.key} aria-hidden="true">
               {keys !== null && <kbd>{keys}</kbd>}
             </span>

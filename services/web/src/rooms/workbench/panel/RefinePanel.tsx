@@ -1,6 +1,8 @@
+import { ChevronDown } from "lucide-react";
 import { Button, Menu, MenuItem, Slider } from "../../../components";
 import { useObservable, useObservableOr } from "../../../drafts/useObservable";
 import type { OpenShape } from "../shape/openShape";
+import { useCanEdit } from "../shape/useCanEdit";
 import type { ToolShelf } from "../tools/toolSettings";
 import type { Refinement } from "../tools/useRefinement";
 import styles from "./RefinePanel.module.css";
@@ -16,7 +18,7 @@ export interface RefinePanelProps {
 export function RefinePanel({ open, shelf, refinement, hasConfirmed }: RefinePanelProps) {
   const { omega } = useObservable(shelf.settings);
   useObservableOr(open?.version, 0);
-  const canEdit = open?.canEdit ?? false;
+  const canEdit = useCanEdit(open);
   const isAgain = open !== null && open.anchor !== null;
   return (
     <section className={styles.refine} aria-label="Refine and start">
@@ -56,13 +58,23 @@ export function RefinePanel({ open, shelf, refinement, hasConfirmed }: RefinePan
 }
 
 function StartMenu({ open, shelf, refinement, hasConfirmed }: RefinePanelProps) {
+  const canEdit = useCanEdit(open);
   const hasOpened = open?.opened.some((label) => label !== 0) ?? false;
   const cutAnew = () => {
     open?.perform({ kind: "clear" });
     shelf.change({ tool: "patches" });
   };
   return (
-    <Menu label="Start from" isDisabled={!(open?.canEdit ?? false)}>
+    <Menu
+      label="Start from"
+      className={styles.start}
+      trigger={
+        <>
+          Start from <ChevronDown aria-hidden="true" />
+        </>
+      }
+      isDisabled={!canEdit}
+    >
       <MenuItem onSelect={() => open?.perform({ kind: "clear" })}>Nothing</MenuItem>
       <MenuItem onSelect={cutAnew}>Patches</MenuItem>
       <MenuItem onSelect={() => refinement.startFrom("predicted")}>Predicted labels</MenuItem>

@@ -4,6 +4,7 @@ import { useObservable } from "../../../drafts/useObservable";
 import type { Desk } from "../desk/desk";
 import type { HeldShape } from "../desk/heldShape";
 import type { Part } from "../parts";
+import { useCanEdit } from "../shape/useCanEdit";
 import type { ToolShelf } from "../tools/toolSettings";
 import type { Refinement } from "../tools/useRefinement";
 import { HeldShapes } from "./HeldShapes";
@@ -30,6 +31,7 @@ export function ShapePanel(props: ShapePanelProps) {
   const state = useObservable(held.state);
   const facts = useObservable(held.facts);
   const open = state.step === "ready" ? state.open : null;
+  const canEdit = useCanEdit(open);
   const { source_key: name, score, model_version: version } = held.lease;
   return (
     <aside className={styles.panel} aria-label="Shape in hand">
@@ -61,7 +63,7 @@ export function ShapePanel(props: ShapePanelProps) {
         <Button
           variant="primary"
           className={styles.confirm ?? ""}
-          disabled={open === null || !open.canEdit}
+          disabled={!canEdit}
           isBusy={isConfirming}
           aria-keyshortcuts="Enter"
           title="Confirm these labels and go on to the next shape (Enter)"

@@ -10,7 +10,7 @@ export function StageArea(props: {
   over: ReactNode;
   children: (stage: ShapeStage) => ReactNode;
 }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
+  const host = useRef<HTMLDivElement>(null);
   const [stage, setStage] = useState<ShapeStage | null>(null);
   const [why, setWhy] = useState<string | null>(null);
   const [isLost, setLost] = useState(false);
@@ -18,16 +18,22 @@ export function StageArea(props: {
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: another canvas, another stage
   useEffect(() => {
-    if (canvas.current === null) return undefined;
+    if (host.current === null) return undefined;
+    // a canvas of its own: one whose context was given up cannot have another
+    const canvas = document.createElement("canvas");
+    canvas.className = styles.canvas ?? "";
+    host.current.prepend(canvas);
     try {
-      const made = new ShapeStage(canvas.current);
+      const made = new ShapeStage(canvas);
       made.onContext = (state) => setLost(state === "lost");
       setStage(made);
       return () => {
         setStage(null);
         made.dispose();
+        canvas.remove();
       };
     } catch (error) {
+      canvas.remove();
       setWhy(error instanceof Error ? error.message : String(error));
       return undefined;
     }
@@ -43,8 +49,7 @@ export function StageArea(props: {
     );
   }
   return (
-    <div className={styles.area}>
-      <canvas key={attempt} ref={canvas} className={styles.canvas} />
+    <div ref={host} className={styles.area}>
       <div className={styles.grid} data-count={props.count}>
         {stage !== null && props.children(stage)}
       </div>

@@ -1,9 +1,19 @@
-import { Columns2, Grid2x2, Link2, Maximize, PanelsLeftBottom, Square } from "lucide-react";
+import {
+  Boxes,
+  ChevronDown,
+  Columns2,
+  Eye,
+  Grid2x2,
+  Link2,
+  Maximize,
+  PanelsLeftBottom,
+  Square,
+} from "lucide-react";
 import type { ReactNode } from "react";
 import { IconButton, Menu, MenuItem, Segmented } from "../../../components";
 import type { NamedView } from "../../../viewer/pose";
 import styles from "./ViewControls.module.css";
-import type { ViewContent, ViewCount, Views } from "./views";
+import type { ViewCount, Views } from "./views";
 
 const COUNTS: readonly { value: `${ViewCount}`; label: string; icon: ReactNode }[] = [
   { value: "1", label: "One view", icon: <Square /> },
@@ -33,15 +43,12 @@ export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
     <div className={styles.controls}>
       {views.count > 1 && (
         <>
-          <Segmented<ViewContent>
-            label="What the views show"
+          <IconButton
+            label="A shape in each view"
             size="small"
-            value={views.content}
-            onChange={(content) => onChange({ content })}
-            options={[
-              { value: "cameras", label: "One shape" },
-              { value: "shapes", label: "Shapes in hand" },
-            ]}
+            icon={<Boxes />}
+            isPressed={views.content === "shapes"}
+            onClick={() => onChange({ content: views.content === "shapes" ? "cameras" : "shapes" })}
           />
           <IconButton
             label="Link cameras"
@@ -60,7 +67,17 @@ export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
         options={COUNTS}
         onChange={(value) => onChange({ count: Number(value) as ViewCount })}
       />
-      <Menu label="Look from" alignment="end">
+      <Menu
+        label="Look from"
+        alignment="end"
+        className={styles.look}
+        trigger={
+          <>
+            <Eye aria-hidden="true" />
+            <ChevronDown aria-hidden="true" />
+          </>
+        }
+      >
         {LOOKS.map(([look, words, keys]) => (
           <MenuItem
             key={look}

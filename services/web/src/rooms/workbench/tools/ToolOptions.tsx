@@ -60,17 +60,18 @@ function PaintOptions({ shelf, parts }: { shelf: ToolShelf; parts: readonly Part
         isChecked={hasAngleLimit}
         onChange={(isOn) => shelf.change({ hasAngleLimit: isOn })}
       />
-      <Slider
-        className={styles.slider ?? ""}
-        label="Angle"
-        value={angleDegrees}
-        min={5}
-        max={90}
-        step={5}
-        isDisabled={!hasAngleLimit}
-        format={(degrees) => `${degrees}°`}
-        onChange={(degrees) => shelf.change({ angleDegrees: degrees })}
-      />
+      {hasAngleLimit && (
+        <Slider
+          className={styles.slider ?? ""}
+          label="Angle"
+          value={angleDegrees}
+          min={5}
+          max={90}
+          step={5}
+          format={(degrees) => `${degrees}°`}
+          onChange={(degrees) => shelf.change({ angleDegrees: degrees })}
+        />
+      )}
       <div className={styles.field}>
         <span aria-hidden="true">Only over</span>
         <Select

@@ -1,9 +1,10 @@
-import { Blend, Brush, Hand, Pipette, Redo2, Squircle, Undo2, Waypoints } from "lucide-react";
+import { Brush, Hand, PaintBucket, Pipette, Puzzle, Redo2, Spline, Undo2 } from "lucide-react";
 import type { ReactNode } from "react";
 import { IconButton } from "../../../components";
 import { useObservable, useObservableOr } from "../../../drafts/useObservable";
 import { keysFor } from "../keys/shortcuts";
 import type { OpenShape } from "../shape/openShape";
+import { useCanEdit } from "../shape/useCanEdit";
 import styles from "./ToolRail.module.css";
 import type { ToolName, ToolShelf } from "./toolSettings";
 
@@ -14,8 +15,8 @@ const TOOLS: readonly {
   readonly keys: string;
 }[] = [
   { name: "paint", label: "Paint", icon: <Brush />, keys: "Paint" },
-  { name: "patches", label: "Patches", icon: <Waypoints />, keys: "Patches" },
-  { name: "segment", label: "Whole segment", icon: <Squircle />, keys: "Whole segment" },
+  { name: "patches", label: "Patches", icon: <Puzzle />, keys: "Patches" },
+  { name: "segment", label: "Whole segment", icon: <PaintBucket />, keys: "Whole segment" },
   { name: "pick", label: "Pick a part", icon: <Pipette />, keys: "Pick the part under the pointer" },
   { name: "turn", label: "Turn", icon: <Hand />, keys: "Turn the shape" },
 ];
@@ -32,7 +33,7 @@ export function ToolRail({
 }) {
   const { tool } = useObservable(shelf.settings);
   useObservableOr(open?.version, 0);
-  const canEdit = open?.canEdit ?? false;
+  const canEdit = useCanEdit(open);
   return (
     <div className={styles.rail} role="toolbar" aria-label="Tools" aria-orientation="vertical">
       {TOOLS.map(({ name, label, icon, keys }) => (
@@ -48,7 +49,7 @@ export function ToolRail({
       <hr className={styles.line} />
       <IconButton
         label="Refine boundaries"
-        icon={<Blend />}
+        icon={<Spline />}
         shortcut={keysFor("Refine boundaries") ?? ""}
         disabled={!canEdit}
         onClick={onRefine}
