@@ -4,9 +4,31 @@
 
 from datetime import UTC, datetime, timedelta
 
+import numpy as np
+
+from partwise.errors import ConflictError
 from partwise.store.catalog import Catalog
-from partwise.store.records import FailureKind, NewFailure
-from partwise.testing.catalog.samples import add_collection, publish
+from partwise.store.records import (
+    Closeness,
+    FailureKind,
+    NewBlindCheck,
+    NewFailure,
+    NewRevision,
+    NewScore,
+    RecheckResult,
+    RevisionKind,
+)
+from partwise.testing.catalog.samples import (
+    add_collection,
+    claim,
+    confirm,
+    label,
+    mesh_hash,
+    publish,
+    ready_shapes,
+    save_model,
+)
+from partwise.testing.expect import raises
 
 HOUR = timedelta(hours=1)
 
@@ -32,3 +54,49 @@ class FigureConformance:
             catalog.record_failure(NewFailure(shape_id, "mesh", "k1", "why", detail=detail))
         counts = catalog.failure_kinds(collection.id)
         assert counts == {**dict.fromkeys(FailureKind, 0), FailureKind.MEMORY: 2, FailureKind.ERROR: 1}
+
+    def test_people_rounds_and_days_count_what_was_confirmed(self, catalog: Catalog) -> None:
+        collection, (known, _) = ready_shapes(catalog, 2)
+        model = save_model(catalog, collection.id)
+        catalog.record_done([], [NewScore(known, model.id, "entropy", 0.5)])
+        reference = label(catalog, known, RevisionKind.REFERENCE)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 1.0})
+        ann = catalog.list_people()[0]
+        check = NewBlindCheck(reference.id, Closeness(0.8, 0.7, 0.1))
+        confirm(catalog, claim(catalog, collection, ann), blind_check=check)
+        now = datetime.now(UTC)
+        (person,) = catalog.person_figures(collection.id, now - HOUR)
+        assert (person.name, person.n_confirmed, person.n_timed, person.n_checks) == ("ann", 1, 0, 1)
+        assert catalog.person_figures(collection.id, now + HOUR) == []
+        (day,) = catalog.blind_check_days(collection.id)
+        assert (day.person_id, day.n_checks, day.mean) == (ann.id, 1, check.closeness)
+        (found,) = catalog.model_rounds(collection.id, "entropy")
+        assert (found.n_scores, found.mean_score, found.n_checks, found.area_agreement) == (1, 0.5, 1, 0.8)
+        assert catalog.scored_by(collection.id, "entropy") == {1: 1}
+        assert catalog.lease_counts(collection.id).n_active == 0
+        assert catalog.database_bytes() > 0
+        assert sum(each.n_blocks for each in catalog.block_totals()) == 3
+
+    def test_accepted_labels_are_counted_with_their_checks(self, catalog: Catalog) -> None:
+        collection, (first, second, third) = ready_shapes(catalog, 3)
+        rita = catalog.add_person("rita")
+        batch_id = catalog.begin_accept(collection.id, rita.id, "predicted", 0.9)
+        labels = np.ones(6, dtype=np.uint16)
+        revision = NewRevision(first, mesh_hash(first), RevisionKind.HUMAN, rita.id, 1, labels)
+        catalog.accept_shape(batch_id, revision)
+        drawn = catalog.draw_shape(batch_id, third, mesh_hash(third), 1, labels)
+        for again in (revision, NewRevision(third, mesh_hash(third), RevisionKind.HUMAN, rita.id, 1, labels)):
+            with raises(ConflictError, "shape"):
+                catalog.accept_shape(batch_id, again)
+        assert catalog.open_rechecks(collection.id, shape_id=third) == [drawn]
+        assert catalog.recheck_labels(drawn.id).tolist() == [1] * 6
+        lease = claim(catalog, collection, catalog.add_person("ann"))
+        assert lease.shape_id == third
+        revision_id = confirm(catalog, lease).revision_id
+        assert revision_id is not None
+        result = RecheckResult(drawn.id, revision_id, Closeness(0.5, 0.4, 0.2))
+        assert [catalog.settle_recheck(result) for _ in range(2)] == [True, True]
+        (batch,) = catalog.accept_batches(collection.id)
+        assert (batch.n_accepted, batch.n_drawn, batch.n_rechecked, batch.n_false) == (1, 1, 1, 1)
+        assert catalog.open_rechecks(collection.id) == []
+        assert catalog.put_first(collection.id, [first, second], rita.id) == [second]
