@@ -1,7 +1,7 @@
-/** Prepares meshes off the page's thread, so that the page stays smooth while the next shape is fetched. */
+/** Prepares one mesh off the page's thread, so that the page stays smooth meanwhile. */
 import { type MeshArrays, prepared, transferables } from "./meshPreparation";
 
-self.onmessage = ({ data }: MessageEvent<MeshArrays & { request: number }>) => {
+self.onmessage = ({ data }: MessageEvent<MeshArrays>) => {
   const preparation = prepared(data);
-  self.postMessage({ request: data.request, preparation }, { transfer: transferables(preparation) });
+  self.postMessage(preparation, { transfer: transferables(preparation) });
 };

@@ -1,7 +1,7 @@
-/** Meshes made ready for viewing and painting, in a worker of their own. */
+/** Meshes made ready for viewing and painting, off the page's thread. */
 import { MeshBVH } from "three-mesh-bvh";
 import type { SurfaceMesh } from "../geometry/surfaceMesh";
-import { type Preparation, pickGeometry, prepared } from "./meshPreparation";
+import { type MeshArrays, type Preparation, pickGeometry, prepared } from "./meshPreparation";
 
 /** A mesh with all that viewing, picking and painting need of it. */
 export interface PreparedMesh {
@@ -13,19 +13,7 @@ export interface PreparedMesh {
   readonly isSolid: boolean;
 }
 
-interface Answer {
-  readonly request: number;
-  readonly preparation: Preparation;
-}
-
-const waiting = new Map<
-  number,
-  { resolve: (preparation: Preparation) => void; reject: (error: Error) => void }
->();
-let nRequests = 0;
-let worker: Worker | undefined;
-
-/** The mesh prepared; it keeps its measures and adjacency, too. Rejects when the worker cannot be started. */
+/** The mesh prepared; it keeps its measures and adjacency, too. Rejects where the worker fails. */
 export async function prepareMesh(mesh: SurfaceMesh): Promise<PreparedMesh> {
   const { vertices, faces } = mesh;
   const preparation =
@@ -35,25 +23,17 @@ export async function prepareMesh(mesh: SurfaceMesh): Promise<PreparedMesh> {
   return { mesh, normals: preparation.normals, bvh, isSolid: preparation.isSolid };
 }
 
-function preparedElsewhere(arrays: { vertices: Float32Array; faces: Uint32Array }): Promise<Preparation> {
-  worker ??= startedWorker();
-  const request = nRequests++;
-  worker.postMessage({ request, ...arrays });
-  return new Promise((resolve, reject) => waiting.set(request, { resolve, reject }));
-}
-
-function startedWorker(): Worker {
-  const started = new Worker(new URL("./meshPreparation.worker.ts", import.meta.url), { type: "module" });
-  started.onmessage = ({ data }: MessageEvent<Answer>) => {
-    waiting.get(data.request)?.resolve(data.preparation);
-    waiting.delete(data.request);
-  };
-  started.onerror = (event) => {
-    for (const { reject } of waiting.values())
-      reject(new Error(`meshes cannot be prepared: ${event.message}`));
-    waiting.clear();
-    started.terminate();
-    worker = undefined; // the next mesh tries anew
-  };
-  return started;
+/** A worker for each mesh: the next one is prepared while this one is, and nothing is left of it afterwards. */
+async function preparedElsewhere(arrays: MeshArrays): Promise<Preparation> {
+  const worker = new Worker(new URL("./meshPreparation.worker.ts", import.meta.url), { type: "module" });
+  try {
+    return await new Promise((resolve, reject) => {
+      worker.onmessage = ({ data }: MessageEvent<Preparation>) => resolve(data);
+      worker.onerror = ({ message }) =>
+        reject(new Error(`the shape cannot be prepared for viewing: ${message}`));
+      worker.postMessage(arrays);
+    });
+  } finally {
+    worker.terminate();
+  }
 }

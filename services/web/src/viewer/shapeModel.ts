@@ -42,7 +42,7 @@ export interface ModelOptions {
 export class ShapeModel {
   readonly mesh: SurfaceMesh;
   readonly scene = new Scene();
-  /** Called whenever something must be drawn anew; the stage listens. */
+  /** Called whenever something must be drawn anew; the views that show the shape listen. */
   readonly changed = new Set<() => void>();
   readonly #prepared: PreparedMesh;
   #since: number | null;

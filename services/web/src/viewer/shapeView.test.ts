@@ -1,5 +1,5 @@
 // @vitest-environment jsdom
-import { beforeEach, describe, expect, it, vi } from "vitest";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { SurfaceMesh } from "../geometry/surfaceMesh";
 import { prepareMesh } from "./prepareMesh";
 import { type Hit, ShapeModel } from "./shapeModel";
@@ -57,6 +57,8 @@ beforeEach(() => {
   };
   view.listen(listener);
 });
+
+afterEach(() => view.remove());
 
 function pointer(type: string, x: number, y: number, options: PointerEventInit = {}): void {
   view.element.dispatchEvent(new PointerEvent(type, { clientX: x, clientY: y, pointerId: 1, ...options }));
@@ -198,6 +200,18 @@ describe("hovering", () => {
     pointer("pointermove", BESIDE, BESIDE);
     pointer("pointerleave", BESIDE, BESIDE);
     expect(told).toEqual(["hover", "left"]);
+  });
+});
+
+describe("a shape in two views", () => {
+  it("is still drawn anew in one after it has left the other", () => {
+    const other = new ShapeView(document.createElement("div"), { up: "y" }, stage);
+    other.show(model);
+    view.show(null);
+    stage.invalidate.mockClear();
+    model.setWireframe(true);
+    expect(stage.invalidate).toHaveBeenCalledOnce();
+    other.remove();
   });
 });
 

@@ -55,6 +55,7 @@ export class ShapeView {
   readonly #camera = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI);
   readonly #listeners = new Set<ViewListener>();
   readonly #controls: readonly { remove(): void }[];
+  readonly #redraw = () => this.#stage.invalidate();
   #model: ShapeModel | null = null;
   #pose: Pose = { orientation: namedOrientation("threeQuarter"), offset: new Vector3(), distance: 2.4 };
 
@@ -89,8 +90,8 @@ export class ShapeView {
   /** Shows a shape, or none. Another shape than before is framed, unless `keepsPose`. */
   show(model: ShapeModel | null, { keepsPose = false } = {}): void {
     if (model === this.#model) return;
-    this.#model?.changed.delete(this.#stage.invalidate);
-    model?.changed.add(this.#stage.invalidate);
+    this.#model?.changed.delete(this.#redraw);
+    model?.changed.add(this.#redraw);
     this.#model = model;
     if (model !== null && !keepsPose) this.frame();
     this.#stage.invalidate();
