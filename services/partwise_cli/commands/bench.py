@@ -1,4 +1,4 @@
-"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox."""
+"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox, load."""
 
 import tempfile
 from collections.abc import Iterator
@@ -298,6 +298,33 @@ def toolbox(
                 print_measured(each)
     if as_json:
         print_json(toolbox_json(request, measured))
+
+
+@app.command()
+def load(
+    database: Annotated[
+        str, typer.Option(help="sqlite, postgres for a server of its own, or the URL of an empty database.")
+    ] = "sqlite",
+    shapes: Annotated[int, typer.Option(help="Rows in the catalog.", min=1)] = 300_000,
+    people: Annotated[int, typer.Option(help="Who work at once.", min=1)] = 200,
+    minutes: Annotated[float, typer.Option(help="For which they work; 0 for the table alone.", min=0)] = 3,
+    pages: Annotated[int, typer.Option(help="Requests for each order and filter; 0 for the people alone.", min=0)] = 60,
+    seed: Annotated[int, typer.Option(help="Of the rows and of what people do.", min=0)] = 0,
+    as_json: JsonOption = False,
+) -> None:
+    """The service under load.  [dim]partwise bench load --database postgres[/dim]"""
+    from partwise_cli.bench.load import LoadRequest, run_load
+    from partwise_cli.bench.load_report import print_load
+
+    request = LoadRequest(database, shapes, people, minutes, pages, seed)
+    with progress("load") as advance:
+        report = run_load(request, lambda what, n_done, n_total: advance(n_done, n_total, what))
+    if as_json:
+        print_json(asdict(report))
+    else:
+        print_load(report)
+    if not report.is_sound:
+        raise typer.Exit(1)
 
 
 @contextmanager
