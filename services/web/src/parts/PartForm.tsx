@@ -1,4 +1,4 @@
-import { type FormEvent, useState } from "react";
+import { type FormEvent, useEffect, useRef, useState } from "react";
 import { Button, Field, Input, Notice, Select } from "../components";
 import { ColourChoice } from "./ColourChoice";
 import styles from "./Parts.module.css";
@@ -23,6 +23,8 @@ export function PartForm({ collectionId, parts, part, onClose }: PartFormProps) 
   const saving = useSavePart(collectionId);
   const others = parts.filter((each) => each.id !== part?.id);
   const error = nameError(draft, others);
+  const form = useRef<HTMLFormElement>(null);
+  useEffect(() => form.current?.scrollIntoView({ block: "nearest" }), []);
   const submit = (event: FormEvent) => {
     event.preventDefault();
     setTried(true);
@@ -32,6 +34,7 @@ export function PartForm({ collectionId, parts, part, onClose }: PartFormProps) 
   };
   return (
     <form
+      ref={form}
       className={styles.form}
       aria-label={part ? `Change ${part.name}` : "New part"}
       onSubmit={submit}

@@ -14,6 +14,7 @@ export function ReviewsPanel({ collectionId }: { collectionId: number }) {
     <div className={styles.panel}>
       <Segmented
         label="What to look at"
+        className={styles.choice ?? ""}
         size="small"
         value={view}
         options={[

@@ -54,7 +54,7 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
     <div className={styles.room}>
       <RoomHeading title="Table" isUnseen />
       <div className={styles.main}>
-        <TableToolbar collectionId={collectionId} state={state} nShapes={rows.nShapes} nReviews={null} />
+        <TableToolbar collectionId={collectionId} state={state} nShapes={rows.nShapes} />
         <div className={styles.filterBar}>
           <FilterChips collectionId={collectionId} filters={view.filters} onFilter={state.filter} />
           <TrainingLine collectionId={collectionId} />

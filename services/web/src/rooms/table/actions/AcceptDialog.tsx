@@ -45,6 +45,7 @@ export function AcceptDialog({ collectionId, rows, teller, onClose }: ShapeActio
     >
       <Segmented
         label="Labels to accept"
+        className={styles.choice ?? ""}
         value={labels}
         options={[
           { value: "refined", label: "Refined" },

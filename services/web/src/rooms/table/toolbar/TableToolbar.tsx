@@ -16,12 +16,10 @@ export interface TableToolbarProps {
   readonly collectionId: number;
   readonly state: TableViewState;
   readonly nShapes: number | null;
-  /** Labels that wait for a second look; null where it is not known. */
-  readonly nReviews: string | null;
 }
 
 /** What is shown, in which order, how large, and which panel is beside it. */
-export function TableToolbar({ collectionId, state, nShapes, nReviews }: TableToolbarProps) {
+export function TableToolbar({ collectionId, state, nShapes }: TableToolbarProps) {
   const { view, change } = state;
   const isReviewer = useHasRole("reviewer");
   const toggle = (panel: Panel) => change({ panel: view.panel === panel ? null : panel });
@@ -63,7 +61,7 @@ export function TableToolbar({ collectionId, state, nShapes, nReviews }: TableTo
           icon={<ClipboardCheck />}
           onClick={() => toggle("reviews")}
         >
-          {nReviews === null ? "Reviews" : `Reviews ${nReviews}`}
+          Reviews
         </PanelButton>
       )}
     </div>
