@@ -2,6 +2,7 @@
 
 from partwise.testing.catalog.collections import CollectionConformance
 from partwise.testing.catalog.drafts import DraftConformance
+from partwise.testing.catalog.figures import FigureConformance
 from partwise.testing.catalog.jobs import EventConformance, JobConformance
 from partwise.testing.catalog.labels import LabelConformance
 from partwise.testing.catalog.listing import ListingConformance
@@ -26,5 +27,6 @@ class CatalogConformance(
     EventConformance,
     TokenConformance,
     ListingConformance,
+    FigureConformance,
 ):
     """What every `Catalog` must pass. A subclass provides a pytest fixture `catalog`: an empty catalog."""
