@@ -36,6 +36,39 @@ describe("golden paint strokes", () => {
   });
 });
 
+/** A grid of 3 by 4 squares of side 3, each of two triangles: its diagonal is 15, its centroids are whole. */
+function grid(): SurfaceMesh {
+  const vertices = Array.from({ length: 20 }, (_, k) => [3 * (k % 4), 3 * Math.floor(k / 4), 0]).flat();
+  const corner = (square: number) => Math.floor(square / 3) * 4 + (square % 3);
+  const faces = Array.from({ length: 12 }, (_, square) => {
+    const a = corner(square);
+    return [a, a + 1, a + 5, a, a + 5, a + 4];
+  });
+  return new SurfaceMesh(Float32Array.from(vertices), Uint32Array.from(faces.flat()), "grid");
+}
+
+describe("a click", () => {
+  it("takes faces exactly at the rim", () => {
+    expect(grid().diagonal * 0.2).toBe(3);
+    const taken = [...paintedFaces(grid(), [8], { radius: 0.2, min_cosine: null })];
+    expect(taken).toEqual(expect.arrayContaining([2, 6, 8, 10, 14])); // the same half of the squares around
+    expect(taken).not.toContain(0);
+  });
+
+  it("takes the clicked face whatever the brush, however its own cosine is rounded", () => {
+    const { mesh } = golden("scraps.json");
+    for (let seed = 0; seed < mesh.nFaces; seed += 1) {
+      expect(paintedFaces(mesh, [seed], { radius: 1e-9, min_cosine: 1 })).toContain(seed);
+    }
+  });
+
+  it("takes faces exactly at the limit of the angle", () => {
+    const { mesh } = golden("fold.json");
+    const flat = paintedFaces(mesh, [27], { radius: 1, min_cosine: 1 });
+    expect(flat.length).toBeGreaterThan(1);
+  });
+});
+
 describe("a drag", () => {
   const { mesh } = golden("fold.json");
 

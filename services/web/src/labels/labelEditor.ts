@@ -20,7 +20,7 @@ import {
 } from "./operations";
 import { labelsSha256 } from "./sha256";
 
-export const UNDO_LIMIT = 200;
+const UNDO_LIMIT = 200;
 
 /** Faces, ascending, whose label changed, with their labels before and after. Not to be written to: undo holds them. */
 export interface Change {
