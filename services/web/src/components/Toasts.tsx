@@ -63,13 +63,13 @@ function ToastList(props: {
   onClose: (id: number) => void;
 }) {
   return (
-    <div
-      role={props.politeness === "polite" ? "status" : "alert"}
-      aria-live={props.politeness}
-      className={styles.list}
-    >
+    <div aria-live={props.politeness} className={styles.list}>
       {props.toasts.map((toast) => (
-        <div key={toast.id} className={classes(styles.toast, toast.tone && styles[toast.tone])}>
+        <div
+          key={toast.id}
+          role={toast.tone === "bad" ? "alert" : "status"}
+          className={classes(styles.toast, toast.tone && styles[toast.tone])}
+        >
           <p className={styles.message}>{toast.message}</p>
           {toast.action && (
             <button

@@ -9,6 +9,8 @@ const MIN_POINTS = 2;
 const Y_AXIS_PX = 52;
 const MINUTE_S = 60;
 const X_AXIS_PX = 28;
+const CLOCK: Partial<uPlot.Axis> = { values: (_plot, times) => clockTimes(times) };
+const ROUND_BY_ROUND: Partial<uPlot.Axis> = { incrs: [1, 2, 5, 10, 20, 50, 100] };
 
 /** A chart in an element: made when it is connected, drawn anew when its data, its width or the scheme changes. */
 export class LineChart {
@@ -72,12 +74,7 @@ export class LineChart {
         y: { range: (_plot, _low, high) => [0, Math.max(data.top ?? 0, (high ?? 0) * 1.08, Number.EPSILON)] },
       },
       axes: [
-        {
-          ...axis,
-          font,
-          grid: { show: false },
-          ...(data.isTime ? {} : { incrs: [1, 2, 5, 10, 20, 50, 100] }),
-        },
+        { ...axis, font, grid: { show: false }, size: X_AXIS_PX, ...(data.isTime ? CLOCK : ROUND_BY_ROUND) },
         { ...axis, font, size: Y_AXIS_PX, values: (_plot, splits) => splits.map(data.format) },
       ],
       series: [
