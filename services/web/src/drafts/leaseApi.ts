@@ -74,3 +74,5 @@ export const leaseApi = {
     await api.POST("/api/v1/leases/{lease_id}/release", { params: { path: { lease_id: leaseId } } });
   },
 };
+
+export type LeaseApi = typeof leaseApi;

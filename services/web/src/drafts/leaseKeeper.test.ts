@@ -9,12 +9,14 @@ let clock: HandClock;
 let answers: (() => Renewed<LeaseRecord>)[];
 let claims: (() => Renewed<LeaseRecord>)[];
 let nRenewals: number;
+let told: (boolean | null)[];
 
 beforeEach(() => {
   clock = new HandClock();
   answers = [];
   claims = [];
   nRenewals = 0;
+  told = [];
 });
 
 /** The service's clock is a day ahead of this one. */
@@ -25,8 +27,9 @@ function renewed(id = 1): Renewed<LeaseRecord> {
 }
 
 const transport: LeaseTransport<LeaseRecord> = {
-  async renew() {
+  async renew(_id, isPrefetched) {
     nRenewals++;
+    told.push(isPrefetched);
     return (answers.shift() ?? renewed)();
   },
   reclaim: async () => (claims.shift() ?? (() => renewed(2)))(),
@@ -75,6 +78,14 @@ describe("a lease", () => {
     expect(keeper.state.get()).toEqual({ kind: "lost", why: "shape 3 is with Ben" });
     await clock.advance(60_000);
     expect(keeper.state.get().kind).toBe("held");
+  });
+
+  it("tells that work has begun as often as it takes, then no more", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    answers = [fails(new Unreachable("cut"))];
+    await keeper.renew(false);
+    await clock.advance(LEASE_MS / 2);
+    expect(told).toEqual([false, false, null]);
   });
 
   it("is let go when stopped, even while an answer is under way", async () => {

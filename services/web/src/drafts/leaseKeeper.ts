@@ -45,6 +45,8 @@ export class LeaseKeeper<L extends LeaseRecord> {
   private cancel: (() => void) | null = null;
   private isStopped = false;
   private isAsking = false;
+  /** What is to be told with the next renewal that gets through. */
+  private wish: boolean | null = null;
 
   constructor(
     private readonly transport: LeaseTransport<L>,
@@ -63,12 +65,13 @@ export class LeaseKeeper<L extends LeaseRecord> {
 
   /** Renews now: after sleep, or when the network is back. */
   async renew(isPrefetched: boolean | null = null): Promise<void> {
+    this.wish = isPrefetched ?? this.wish;
     if (this.isStopped || this.isAsking) return;
     this.cancel?.();
     this.backoff.stop();
     this.isAsking = true;
     try {
-      await this.ask(isPrefetched);
+      await this.ask();
     } finally {
       this.isAsking = false;
     }
@@ -80,9 +83,9 @@ export class LeaseKeeper<L extends LeaseRecord> {
     this.backoff.stop();
   }
 
-  private async ask(isPrefetched: boolean | null): Promise<void> {
+  private async ask(): Promise<void> {
     try {
-      this.hold(await this.transport.renew(this.held.id, isPrefetched));
+      this.hold(await this.transport.renew(this.held.id, this.wish));
     } catch (error) {
       const failure = failureOf(error);
       if (failure.kind === "closed" || failure.kind === "stale") await this.claimAgain();
@@ -106,6 +109,7 @@ export class LeaseKeeper<L extends LeaseRecord> {
     if (this.isStopped) return;
     const lastsMs = Date.parse(lease.expires_at) - at;
     this.held = lease;
+    this.wish = null;
     this.expiresAt = this.clock.now() + lastsMs;
     this.backoff.reset();
     this.state.set({ kind: "held" });

@@ -1,14 +1,19 @@
 /** Shapes in a person's hands, which of them is worked on, and the next one loaded ahead. */
 import { Problem } from "../../../api/problem";
 import type { ConfirmOutcome } from "../../../drafts/confirming";
-import type { SessionParts } from "../../../drafts/draftSession";
-import { type Lease, leaseApi, type RefusedClaim } from "../../../drafts/leaseApi";
+import type { Lease, LeaseApi, RefusedClaim } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
-import { HeldShape, type Opening } from "./heldShape";
+import type { HeldShape, Opening } from "./heldShape";
 
 /** As many as the service lets one person hold. */
 export const MAX_HELD = 4;
+
+export interface DeskParts {
+  readonly leases: LeaseApi;
+  /** isNamed : asked for by name, rather than handed out by the queue. */
+  hold(leased: Renewed<Lease>, isNamed: boolean): HeldShape;
+}
 
 export interface DeskState {
   readonly phase: "opening" | "working" | "empty" | "failed";
@@ -29,7 +34,7 @@ export class Desk {
 
   /** opening : asked each time, since parts and preferences change. */
   constructor(
-    private readonly parts: SessionParts,
+    private readonly parts: DeskParts,
     private readonly collectionId: number,
     private readonly opening: () => Opening,
   ) {}
@@ -42,7 +47,7 @@ export class Desk {
     await this.attempt(async () => {
       const refused: RefusedClaim[] = [];
       if (named.length > 0) refused.push(...(await this.claimNamed(named)));
-      for (const leased of await leaseApi.held(this.collectionId)) this.takeHeld(leased, since);
+      for (const leased of await this.parts.leases.held(this.collectionId)) this.takeHeld(leased, since);
       this.change({ refused });
       const wanted = this.state.get().shapes.find((shape) => shape.shapeId === named[0]);
       const first = wanted ?? this.state.get().shapes[0];
@@ -63,7 +68,12 @@ export class Desk {
 
   show(shape: HeldShape): void {
     this.change({ phase: "working", current: shape, why: null });
-    if (shape.state.get().step !== "ready") void shape.begin(this.opening());
+    this.begin(shape);
+  }
+
+  /** Has a shape in hand ready to be worked on, whether or not it is the one that is worked on. */
+  begin(shape: HeldShape): void {
+    if (shape.state.get().step !== "failed") void shape.begin(this.opening());
   }
 
   /** Confirms the labels in hand; what comes next is shown at once if that is done. */
@@ -76,13 +86,13 @@ export class Desk {
   }
 
   async skip(shape: HeldShape, reason: string): Promise<void> {
-    await leaseApi.skip(shape.lease.id, reason);
+    await this.parts.leases.skip(shape.lease.id, reason);
     await this.leave(shape);
   }
 
   /** Gives a shape back to the queue; the draft stays. */
   async release(shape: HeldShape): Promise<void> {
-    await leaseApi.release(shape.lease.id);
+    await this.parts.leases.release(shape.lease.id);
     await this.leave(shape);
   }
 
@@ -123,7 +133,7 @@ export class Desk {
   private async claimNamed(named: readonly number[]): Promise<readonly RefusedClaim[]> {
     const since = performance.now();
     try {
-      const { leases, refused } = await leaseApi.named(this.collectionId, named.slice(0, MAX_HELD));
+      const { leases, refused } = await this.parts.leases.named(this.collectionId, named.slice(0, MAX_HELD));
       for (const leased of leases) this.take(leased, true, since);
       return refused;
     } catch (error) {
@@ -145,16 +155,17 @@ export class Desk {
     if (ahead !== null) {
       this.change({ shapes: [...this.state.get().shapes, ahead] });
       this.show(ahead);
+      await ahead.takenUp();
       return;
     }
-    const leased = await leaseApi.next(this.collectionId, false);
+    const leased = await this.parts.leases.next(this.collectionId, false);
     if (leased !== null) this.show(this.take(leased, false, since));
     else if (this.state.get().shapes.length === 0) this.change({ phase: "empty", current: null });
   }
 
   private async loadAhead(): Promise<void> {
     if (this.ahead !== null || this.isClosed || this.state.get().phase !== "working") return;
-    const leased = await leaseApi.next(this.collectionId, true).catch(() => null); // it can be claimed when needed
+    const leased = await this.parts.leases.next(this.collectionId, true).catch(() => null); // it can be claimed when needed
     if (leased === null || this.isClosed) return;
     if (this.all().some((shape) => shape.shapeId === leased.lease.shape_id)) return;
     this.ahead = this.loaded(leased, false, performance.now());
@@ -167,7 +178,7 @@ export class Desk {
   }
 
   private loaded(leased: Renewed<Lease>, isNamed: boolean, since: number): HeldShape {
-    const shape = new HeldShape(this.parts, leased, isNamed);
+    const shape = this.parts.hold(leased, isNamed);
     if (this.isClosed) void shape.close();
     else shape.load(this.opening(), since);
     return shape;

@@ -48,6 +48,8 @@ export class HeldShape {
   readonly reworkNote = new Observable<string | null>(null);
   readonly keeper: LeaseKeeper<Lease>;
   private loading: Promise<[ShapeModel, ShapeFacts, StartLabels | null]> | null = null;
+  private takingUp: Promise<void> | null = null;
+  private hasBegun = false;
   private isClosed = false;
 
   /** isNamed : asked for by name, to go on with its labels, rather than handed out by the queue. */
@@ -80,12 +82,19 @@ export class HeldShape {
     });
   }
 
+  /** Ends once the service knows that the shape is worked on, where it was loaded ahead: it hands it out again else. */
+  takenUp(): Promise<void> {
+    this.takingUp ??= this.lease.is_prefetched ? this.keeper.renew(false) : Promise.resolve();
+    return this.takingUp;
+  }
+
   /** Work begins: opens the draft, where it was left. */
   async begin(opening: Opening): Promise<void> {
-    if (this.isClosed) return;
+    if (this.isClosed || this.hasBegun) return;
+    this.hasBegun = true;
     this.load(opening, performance.now());
     try {
-      if (this.lease.is_prefetched) await this.keeper.renew(false);
+      await this.takenUp();
       const [model, facts, start] = await (this.loading as NonNullable<typeof this.loading>);
       const open = await this.opened(model, facts, opening);
       if (this.isClosed) return await open.close();
@@ -94,6 +103,7 @@ export class HeldShape {
       }
       this.state.set({ step: "ready", model, open });
     } catch (error) {
+      this.hasBegun = false;
       this.state.set({ step: "failed", why: error instanceof Error ? error.message : String(error) });
     }
   }

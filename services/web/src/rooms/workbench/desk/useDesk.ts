@@ -6,10 +6,11 @@ import type { SessionParts } from "../../../drafts/draftSession";
 import { browserTabs } from "../../../drafts/editingRight";
 import { httpTransport } from "../../../drafts/httpTransport";
 import { IndexedDbOutbox } from "../../../drafts/indexedDbOutbox";
-import { leaseApi } from "../../../drafts/leaseApi";
+import { type Lease, leaseApi } from "../../../drafts/leaseApi";
+import type { Renewed } from "../../../drafts/leaseKeeper";
 import { sendLeftovers } from "../../../drafts/leftovers";
 import { Desk } from "./desk";
-import type { Opening } from "./heldShape";
+import { HeldShape, type Opening } from "./heldShape";
 
 export interface OpenedDesk {
   readonly desk: Desk;
@@ -39,7 +40,8 @@ export function useDesk(
   const [opened, setOpened] = useState<OpenedDesk | null>(null);
   useEffect(() => {
     const parts = newParts();
-    const desk = new Desk(parts, collectionId, () => latest.current);
+    const hold = (leased: Renewed<Lease>, isNamed: boolean) => new HeldShape(parts, leased, isNamed);
+    const desk = new Desk({ leases: leaseApi, hold }, collectionId, () => latest.current);
     const ids = wanted === "" ? [] : wanted.split(",").map(Number);
     void desk.start(ids).then(() => sendLeftovers(parts, personId, openKeys(desk)));
     setOpened({ desk, parts });

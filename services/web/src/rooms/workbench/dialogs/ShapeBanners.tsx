@@ -31,7 +31,7 @@ export function ShapeBanners({ held, open, onLeave }: ShapeBannersProps) {
     <>
       {lease.kind === "lost" && (
         <Notice kind="warning" title="This shape is not yours any more" actions={leave}>
-          {lease.why} Your strokes are kept.
+          {sentence(lease.why)} Your strokes are kept.
         </Notice>
       )}
       {role === "watching" && <Watching open={open} />}
@@ -74,6 +74,11 @@ function Withdrawn(props: { open: OpenShape; title: string; why: string; leave: 
       {props.why}
     </Notice>
   );
+}
+
+function sentence(words: string): string {
+  const begun = words.charAt(0).toUpperCase() + words.slice(1);
+  return /[.!?]$/.test(begun) ? begun : `${begun}.`;
 }
 
 function titleOfRefusal(kind: "closed" | "refused", nQueued: number): string {

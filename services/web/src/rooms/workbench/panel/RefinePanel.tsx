@@ -24,7 +24,7 @@ export function RefinePanel({ open, shelf, refinement, hasConfirmed }: RefinePan
     <section className={styles.refine} aria-label="Refine and start">
       <h3 className={styles.heading}>Refine</h3>
       <Slider
-        label="Angles against thickness (ω)"
+        label="Weight of angles (ω)"
         value={omega}
         min={0}
         max={1}

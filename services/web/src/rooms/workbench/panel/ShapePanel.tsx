@@ -32,7 +32,7 @@ export function ShapePanel(props: ShapePanelProps) {
   const facts = useObservable(held.facts);
   const open = state.step === "ready" ? state.open : null;
   const canEdit = useCanEdit(open);
-  const { source_key: name, score, model_version: version } = held.lease;
+  const { source_key: name, rank, score, score_name, model_version: version } = held.lease;
   return (
     <aside className={styles.panel} aria-label="Shape in hand">
       <header className={styles.header}>
@@ -44,8 +44,9 @@ export function ShapePanel(props: ShapePanelProps) {
         </div>
         <dl className={styles.facts}>
           <Fact name="Faces" value={facts?.nFaces == null ? "–" : whole(facts.nFaces)} />
-          <Fact name="Unsureness" value={score === null ? "–" : score.toFixed(3)} />
-          <Fact name="Model" value={version === null ? "none yet" : `version ${version}`} />
+          <Fact name="Rank" value={rank === null ? "–" : whole(rank)} />
+          <Fact name={inWords(score_name ?? "score")} value={score === null ? "–" : score.toFixed(3)} />
+          <Fact name="Model" value={version === null ? "–" : `v${version}`} />
         </dl>
         <HeldShapes desk={desk} />
       </header>
@@ -74,6 +75,12 @@ export function ShapePanel(props: ShapePanelProps) {
       </footer>
     </aside>
   );
+}
+
+/** `mean_entropy` → "Mean entropy". */
+function inWords(scoreName: string): string {
+  const words = scoreName.replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 function Fact({ name, value }: { name: string; value: string }) {

@@ -53,6 +53,15 @@ function ViewGrid(props: ViewGridProps) {
   const live = useRef<(LiveView | null)[]>([]);
   const active = useRef(0);
 
+  useEffect(() => {
+    for (const held of shown) if (held !== null) desk.begin(held);
+  });
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: as many views as there are now have another form each
+  useEffect(() => {
+    for (const each of live.current) each?.view.frame();
+  }, [views.count]);
+
   const shownIds = shown.map((held) => held?.shapeId).join();
   // biome-ignore lint/correctness/useExhaustiveDependencies: other views are to be linked once others are shown
   useEffect(() => {

@@ -1,0 +1,167 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import { Unreachable } from "../../../api/problem";
+import type { ConfirmOutcome } from "../../../drafts/confirming";
+import type { Lease, LeaseApi } from "../../../drafts/leaseApi";
+import type { Renewed } from "../../../drafts/leaseKeeper";
+import { Observable } from "../../../drafts/observable";
+import { conflict } from "../../../drafts/testing";
+import { Desk } from "./desk";
+import type { HeldShape, HeldState } from "./heldShape";
+
+/** A queue that one person works on, as the service keeps it. */
+class FakeQueue {
+  waiting = [1, 2, 3];
+  held: { shapeId: number; isPrefetched: boolean }[] = [];
+  isDown = false;
+
+  readonly api = {
+    held: async () => this.held.map(({ shapeId, isPrefetched }) => leased(shapeId, isPrefetched)),
+    next: async (_collection: number, isPrefetch: boolean) => {
+      if (this.isDown) throw new Unreachable("down");
+      const ahead = this.held.find((each) => each.isPrefetched);
+      if (ahead !== undefined) {
+        ahead.isPrefetched = isPrefetch;
+        return leased(ahead.shapeId, isPrefetch);
+      }
+      const shapeId = this.waiting.shift();
+      if (shapeId === undefined) return null;
+      this.held.push({ shapeId, isPrefetched: isPrefetch });
+      return leased(shapeId, isPrefetch);
+    },
+    named: async (_collection: number, shapeIds: number[]) => {
+      const free = shapeIds.filter((id) => this.waiting.includes(id));
+      if (free.length === 0) throw conflict("shape is with Ben");
+      this.waiting = this.waiting.filter((id) => !free.includes(id));
+      this.held.push(...free.map((shapeId) => ({ shapeId, isPrefetched: false })));
+      const refused = shapeIds
+        .filter((id) => !free.includes(id))
+        .map((shape_id) => ({ shape_id, why: "taken" }));
+      return { leases: free.map((id) => leased(id, false)), refused };
+    },
+    skip: async (leaseId: number) => this.end(leaseId),
+    release: async (leaseId: number) => this.end(leaseId),
+  } as unknown as LeaseApi;
+
+  end(shapeId: number): void {
+    this.held = this.held.filter((each) => each.shapeId !== shapeId);
+  }
+}
+
+function leased(shapeId: number, isPrefetched: boolean): Renewed<Lease> {
+  const lease = { id: shapeId, shape_id: shapeId, collection_id: 9, is_prefetched: isPrefetched } as Lease;
+  return { lease, at: 0 };
+}
+
+let queue: FakeQueue;
+let outcome: ConfirmOutcome;
+let loaded: number[];
+let closed: number[];
+
+beforeEach(() => {
+  queue = new FakeQueue();
+  outcome = { kind: "confirmed" };
+  loaded = [];
+  closed = [];
+});
+
+function held({ lease }: Renewed<Lease>): HeldShape {
+  const confirm = async () => {
+    if (outcome.kind === "confirmed") queue.end(lease.shape_id);
+    return outcome;
+  };
+  return {
+    lease,
+    shapeId: lease.shape_id,
+    state: new Observable({ step: "mesh" } as HeldState),
+    open: { draft: { confirm }, editor: { sha256: () => "sum" } },
+    load: () => loaded.push(lease.shape_id),
+    begin: async () => {},
+    takenUp: async () => {
+      const own = queue.held.find((each) => each.shapeId === lease.shape_id);
+      if (own !== undefined) own.isPrefetched = false;
+    },
+    close: async () => closed.push(lease.shape_id),
+  } as unknown as HeldShape;
+}
+
+async function started(named: number[] = []): Promise<Desk> {
+  const desk = new Desk({ leases: queue.api, hold: held }, 9, () => ({ partIds: [1], start: "best" }));
+  await desk.start(named);
+  return desk;
+}
+
+const current = (desk: Desk) => desk.state.get().current?.shapeId ?? null;
+const inHand = (desk: Desk) => desk.state.get().shapes.map((shape) => shape.shapeId);
+
+describe("a desk", () => {
+  it("takes the next of the queue, and loads the one after it ahead", async () => {
+    const desk = await started();
+    expect(current(desk)).toBe(1);
+    expect(inHand(desk)).toEqual([1]);
+    expect(loaded).toEqual([1, 2]);
+  });
+
+  it("has the same shapes after a reload", async () => {
+    await started();
+    const desk = await started();
+    expect(inHand(desk)).toEqual([1]);
+    expect(queue.waiting).toEqual([3]);
+  });
+
+  it("shows what was loaded ahead once a shape is confirmed", async () => {
+    const desk = await started();
+    await desk.confirm(desk.state.get().current as HeldShape);
+    expect(current(desk)).toBe(2);
+    expect(loaded).toEqual([1, 2, 3]);
+    expect(closed).toEqual([1]);
+  });
+
+  it("stays where it is if a shape could not be confirmed", async () => {
+    const desk = await started();
+    outcome = { kind: "unsaved" };
+    expect(await desk.confirm(desk.state.get().current as HeldShape)).toEqual({ kind: "unsaved" });
+    expect(current(desk)).toBe(1);
+  });
+
+  it("goes on to the next after a skip", async () => {
+    const desk = await started();
+    await desk.skip(desk.state.get().current as HeldShape, "broken");
+    expect(current(desk)).toBe(2);
+  });
+
+  it("is empty once nothing is left", async () => {
+    queue.waiting = [1];
+    const desk = await started();
+    await desk.confirm(desk.state.get().current as HeldShape);
+    expect(desk.state.get()).toMatchObject({ phase: "empty", current: null, shapes: [] });
+  });
+
+  it("takes shapes by name, and says which are not to be had", async () => {
+    const desk = await started([3, 7]);
+    expect(current(desk)).toBe(3);
+    expect(desk.state.get().refused).toEqual([{ shape_id: 7, why: "taken" }]);
+  });
+
+  it("hands out nothing instead of a shape that is not to be had", async () => {
+    const desk = await started([7]);
+    expect(desk.state.get()).toMatchObject({ phase: "failed", why: "shape is with Ben" });
+    expect(queue.held).toEqual([]);
+  });
+
+  it("says why there is no shape, and takes one when asked again", async () => {
+    queue.isDown = true;
+    const desk = await started();
+    expect(desk.state.get().phase).toBe("failed");
+    queue.isDown = false;
+    await desk.takeNext();
+    expect(current(desk)).toBe(1);
+  });
+
+  it("claims nothing when it is closed at once", async () => {
+    const desk = new Desk({ leases: queue.api, hold: held }, 9, () => ({ partIds: [1], start: "best" }));
+    const starting = desk.start([]);
+    await desk.close();
+    await starting;
+    expect(queue.waiting).toEqual([1, 2, 3]);
+  });
+});
