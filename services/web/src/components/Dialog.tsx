@@ -29,6 +29,7 @@ export function Dialog({ title, onClose, children, footer, size = "normal", isAl
   return (
     <dialog
       ref={dialog}
+      tabIndex={-1}
       className={classes(styles.dialog, styles[size])}
       role={isAlert ? "alertdialog" : undefined}
       aria-labelledby={`${id}-title`}
@@ -57,10 +58,11 @@ export function Dialog({ title, onClose, children, footer, size = "normal", isAl
   );
 }
 
-/** What people came for: the first field, else the first answer. The browser itself would take the cross. */
+/** What people came for: the first field, else the first answer, else the text. The browser itself would take the cross. */
 function firstToFocus(dialog: HTMLDialogElement | null): HTMLElement | null | undefined {
   return (
     dialog?.querySelector<HTMLElement>("input:not([type=hidden], :disabled), select, textarea") ??
-    dialog?.querySelector<HTMLElement>("footer button")
+    dialog?.querySelector<HTMLElement>("footer button") ??
+    dialog
   );
 }

@@ -1,4 +1,4 @@
-import { type KeyboardEvent, type ReactNode, useId, useRef, useState } from "react";
+import { type KeyboardEvent, type ReactNode, useId, useLayoutEffect, useRef, useState } from "react";
 import { classes } from "./classes";
 import styles from "./Menu.module.css";
 import { type Alignment, placeBeside } from "./placement";
@@ -31,10 +31,16 @@ export function Menu({
   const button = useRef<HTMLButtonElement>(null);
   const menu = useRef<HTMLDivElement>(null);
   const [isOpen, setOpen] = useState(false);
-  const items = () => [...(menu.current?.querySelectorAll<HTMLElement>(ITEMS) ?? [])];
+
+  useLayoutEffect(() => {
+    if (!isOpen || !button.current || !menu.current) return; // its items are there only while it is open
+    placeBeside(menu.current, button.current, alignment);
+    const found = itemsOf(menu.current);
+    (found.find((item) => item.ariaChecked === "true") ?? found[0])?.focus();
+  }, [isOpen, alignment]);
 
   const onKeyDown = (event: KeyboardEvent) => {
-    const next = nextFocus(items(), event.key);
+    const next = nextFocus(itemsOf(menu.current), event.key);
     if (event.key === "Tab") menu.current?.hidePopover();
     if (!next) return;
     event.preventDefault();
@@ -64,11 +70,7 @@ export function Menu({
         aria-label={label}
         className={styles.menu}
         onToggle={(event) => {
-          const opened = event.newState === "open";
-          setOpen(opened);
-          if (!opened || !button.current || !menu.current) return;
-          placeBeside(menu.current, button.current, alignment);
-          (items().find((item) => item.ariaChecked === "true") ?? items()[0])?.focus();
+          setOpen(event.newState === "open");
         }}
         onKeyDown={onKeyDown}
         onClick={(event) => (event.target as Element).closest(ITEMS) && menu.current?.hidePopover()}
@@ -77,6 +79,10 @@ export function Menu({
       </div>
     </>
   );
+}
+
+function itemsOf(menu: HTMLElement | null): readonly HTMLElement[] {
+  return [...(menu?.querySelectorAll<HTMLElement>(ITEMS) ?? [])];
 }
 
 function nextFocus(items: readonly HTMLElement[], key: string): HTMLElement | undefined {

@@ -3,10 +3,12 @@ import { type ReactNode, useEffect, useMemo, useState } from "react";
 import { listen, type ServiceEvent } from "../../api/events";
 import { meQuery } from "../../api/queries";
 import { EventHub } from "./EventHub";
-import { isStaleAfter } from "./invalidation";
+import { isProgress, isStaleAfter } from "./invalidation";
+import { Soon } from "./Soon";
 import { type ConnectionState, ServiceEventsContext } from "./useServiceEvents";
 
 const GATHER_MS = 400;
+const PROGRESS_MS = 2_500;
 
 /** Listens to the service for the whole page: one stream, whatever is shown. */
 export function ServiceEventsProvider({ children }: { children: ReactNode }) {
@@ -33,11 +35,9 @@ function follow(
   setConnected: (isConnected: boolean) => void,
 ): () => void {
   let gathered: ServiceEvent[] = [];
-  let timer: number | undefined;
-  const invalidate = () => {
+  const soon = new Soon(() => {
     const events = gathered;
     gathered = [];
-    timer = undefined;
     void queries.invalidateQueries({
       predicate: (each) => events.some((event) => isStaleAfter(event, each.queryKey)),
     });
@@ -46,7 +46,7 @@ function follow(
     onEvent(event) {
       hub.publish(event);
       gathered.push(event);
-      timer ??= window.setTimeout(invalidate, GATHER_MS); // many come at once: ask anew once for all of them
+      soon.within(isProgress(event) ? PROGRESS_MS : GATHER_MS); // many come at once: ask anew once for all of them
     },
     onMissed() {
       hub.publishMissed();
@@ -59,7 +59,7 @@ function follow(
     },
   });
   return () => {
-    window.clearTimeout(timer);
+    soon.stop();
     stop();
   };
 }

@@ -10,6 +10,11 @@ const STALE_AFTER: Readonly<Record<EventKind, readonly string[]>> = {
   shape: ["shape", "counts", "reviews", "ops"],
 };
 
+/** Whether an event only says how far a job is: they come often, and nobody needs each of them at once. */
+export function isProgress({ kind, payload }: ServiceEvent): boolean {
+  return kind === "job" && payload.state === "running";
+}
+
 /** Whether a query's answer is about what the event tells of. Second in a key is the collection. */
 export function isStaleAfter(event: ServiceEvent, queryKey: readonly unknown[]): boolean {
   const [about, collectionId] = queryKey;
