@@ -27,7 +27,12 @@ async function replayed({ vertices, faces, labels, log: document }) {
       checksums.push("refused");
     }
     if (stroke.kind === "delta") {
-      const { changed: _, ...json } = await makeDelta(stroke.source, stroke.parameters, before, editor.labels);
+      const { changed: _, ...json } = await makeDelta(
+        stroke.source,
+        stroke.parameters,
+        before,
+        editor.labels,
+      );
       deltas.push(json);
     }
   }

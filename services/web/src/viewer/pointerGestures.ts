@@ -38,6 +38,11 @@ export class PointerGestures {
     element.addEventListener("keydown", this.#key, { signal });
   }
 
+  /** A button or a finger is down. */
+  get isPressed(): boolean {
+    return this.#pressed.size > 0;
+  }
+
   remove(): void {
     this.#strokes.cancel();
     this.#listening.abort();

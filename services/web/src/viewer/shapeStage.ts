@@ -8,7 +8,7 @@ import { ShapeView, type ViewOptions } from "./shapeView";
 const MOST_PIXELS_TO_ONE = 2;
 /** Without a graphics card: pixels to one while things move, and a finer picture once they have been still so long. */
 const STILL_PIXELS_TO_ONE = 2;
-const STILL_AFTER_MS = 400;
+const STILL_AFTER_MS = 500;
 
 export class ShapeStage {
   /** Called when the browser takes the graphics context away, and when it is back and all is drawn anew. */
@@ -87,13 +87,20 @@ export class ShapeStage {
     clearTimeout(this.#stillness);
     if (this.#graphics.isSoftware) {
       this.#drawAt(1);
-      this.#stillness = setTimeout(() => this.#drawAt(STILL_PIXELS_TO_ONE), STILL_AFTER_MS);
+      this.#stillness = setTimeout(() => this.#refine(), STILL_AFTER_MS);
     } else this.#drawAt(Math.min(window.devicePixelRatio, MOST_PIXELS_TO_ONE));
     if (this.#inputAt !== null) {
       performance.measure("partwise:brush", { start: this.#inputAt, end: performance.now() });
       performance.clearMeasures("partwise:brush"); // who observes has it; the browser's list would grow for ever
     }
     this.#inputAt = null;
+  }
+
+  /** Not during a gesture, which would have to wait for it. */
+  #refine(): void {
+    if ([...this.#views].some((view) => view.isHeld))
+      this.#stillness = setTimeout(() => this.#refine(), STILL_AFTER_MS);
+    else this.#drawAt(STILL_PIXELS_TO_ONE);
   }
 
   #drawAt(pixelsToOne: number): void {

@@ -54,7 +54,8 @@ export class ShapeView {
   readonly #upright: Quaternion;
   readonly #camera = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI);
   readonly #listeners = new Set<ViewListener>();
-  readonly #controls: readonly { remove(): void }[];
+  readonly #gestures: PointerGestures;
+  readonly #keys: NavigationKeys;
   readonly #redraw = () => this.#stage.invalidate();
   #model: ShapeModel | null = null;
   #pose: Pose = { orientation: namedOrientation("threeQuarter"), offset: new Vector3(), distance: 2.4 };
@@ -64,11 +65,17 @@ export class ShapeView {
     this.manner = manner;
     this.#stage = stage;
     this.#upright = uprightRotation(up);
-    this.#controls = [new PointerGestures(this), new NavigationKeys(this)];
+    this.#gestures = new PointerGestures(this);
+    this.#keys = new NavigationKeys(this);
   }
 
   get model(): ShapeModel | null {
     return this.#model;
+  }
+
+  /** A gesture is under way. */
+  get isHeld(): boolean {
+    return this.#gestures.isPressed;
   }
 
   get pose(): Pose {
@@ -170,7 +177,8 @@ export class ShapeView {
   /** Ends the view. The element stays. */
   remove(): void {
     this.show(null);
-    for (const control of this.#controls) control.remove();
+    this.#gestures.remove();
+    this.#keys.remove();
     this.#listeners.clear();
     this.#stage.removed(this);
   }
