@@ -1,8 +1,9 @@
 import { useQuery } from "@tanstack/react-query";
 import { Problem } from "../api/problem";
-import { Button, Notice, Spinner } from "../components";
+import { Button, Notice, Progress, Spinner } from "../components";
 import { EmbeddingMap } from "./EmbeddingMap";
-import { mapQuery } from "./mapPoints";
+import styles from "./EmbeddingMap.module.css";
+import { mapProgressQuery, mapQuery } from "./mapPoints";
 
 export interface MapPanelProps {
   readonly collectionId: number;
@@ -40,5 +41,15 @@ export function MapPanel(props: MapPanelProps) {
       </Notice>
     );
   }
-  return <Spinner label="Reading the map" />;
+  return <Reading collectionId={props.collectionId} />;
+}
+
+function Reading({ collectionId }: { collectionId: number }) {
+  const share = useQuery(mapProgressQuery(collectionId)).data ?? 0;
+  return (
+    <div className={styles.reading}>
+      <Spinner label="Reading the map" />
+      {share > 0 && <Progress label="Reading the map" value={share} />}
+    </div>
+  );
 }

@@ -28,7 +28,9 @@ export class MapView {
   private frame = 0;
   private canvas: HTMLCanvasElement | undefined;
   private observer: ResizeObserver | undefined;
+  private colours: { palette: Uint32Array; text: string; surface: string } | undefined;
   private readonly scheme = window.matchMedia("(prefers-color-scheme: dark)");
+  private readonly schemeChoice = new MutationObserver(() => this.recolour());
 
   constructor(readonly points: MapPoints) {
     this.grid = new PointGrid(points);
@@ -41,7 +43,8 @@ export class MapView {
     this.canvas = canvas;
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(canvas);
-    this.scheme.addEventListener("change", this.draw);
+    this.scheme.addEventListener("change", this.recolour);
+    this.schemeChoice.observe(document.documentElement, { attributeFilter: ["data-scheme"] });
     this.resize();
     this.goHome();
   }
@@ -49,7 +52,8 @@ export class MapView {
   disconnect(): void {
     cancelAnimationFrame(this.frame);
     this.observer?.disconnect();
-    this.scheme.removeEventListener("change", this.draw);
+    this.scheme.removeEventListener("change", this.recolour);
+    this.schemeChoice.disconnect();
     this.canvas = undefined;
   }
 
@@ -78,7 +82,7 @@ export class MapView {
   colourBy(colouring: Colouring): void {
     this.colouring = colouring;
     this.kinds = kindsOf(this.points, colouring);
-    this.draw();
+    this.recolour();
   }
 
   /** Radius of a point in pixels of the page: the fewer there are, the larger. */
@@ -91,6 +95,17 @@ export class MapView {
     cancelAnimationFrame(this.frame);
     this.frame = requestAnimationFrame(() => this.drawNow());
   };
+
+  private readonly recolour = (): void => {
+    this.colours = undefined;
+    this.draw();
+  };
+
+  /** Read from the page once, not for every frame: it makes the browser work out styles anew. */
+  private coloursNow(host: HTMLElement) {
+    const [text, surface] = tokenColours(host, ["--text", "--surface"]).map(cssOf) as [string, string];
+    return { palette: paletteOf(host, this.colouring), text, surface };
+  }
 
   private resize(): void {
     if (!this.canvas) return;
@@ -114,20 +129,17 @@ export class MapView {
     const pixels = new Uint32Array(this.image.data.buffer);
     pixels.fill(0);
     const camera = { ...this.camera, scale: this.camera.scale * this.ratio };
-    const palette = paletteOf(this.canvas.parentElement ?? document.body, this.colouring);
+    this.colours ??= this.coloursNow(this.canvas.parentElement ?? document.body);
+    const { palette, text, surface } = this.colours;
     const look = { kind: this.kinds, palette, radius: this.radius * this.ratio };
     paintPoints(pixels, { width, height }, this.points, camera, look);
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.putImageData(this.image, 0, 0);
     context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    this.drawMarks(context);
+    this.drawMarks(context, text, surface);
   }
 
-  private drawMarks(context: CanvasRenderingContext2D): void {
-    const host = this.canvas?.parentElement ?? document.body;
-    const [text, surface] = tokenColours(host, ["--text", "--surface"]).map(
-      (colour) => `rgb(${colour & 255} ${(colour >> 8) & 255} ${(colour >> 16) & 255})`,
-    ) as [string, string];
+  private drawMarks(context: CanvasRenderingContext2D, text: string, surface: string): void {
     for (let place = 0; place < this.points.n; place++) {
       if (this.points.isFirst[place]) this.diamond(context, place, text, surface);
     }
@@ -193,4 +205,8 @@ export class MapView {
     const { x, y } = this.points;
     return toScreen(this.camera, this.extent, x[place] as number, y[place] as number);
   }
+}
+
+function cssOf(colour: number): string {
+  return `rgb(${colour & 255} ${(colour >> 8) & 255} ${(colour >> 16) & 255})`;
 }

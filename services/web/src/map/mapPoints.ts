@@ -72,7 +72,11 @@ export function clusterSizes(points: MapPoints): Map<number, number> {
   return new Map([...sizes].sort(([a], [b]) => a - b));
 }
 
-async function readMap(collectionId: number, signal: AbortSignal): Promise<MapPoints> {
+async function readMap(
+  collectionId: number,
+  signal: AbortSignal,
+  onProgress: (share: number) => void,
+): Promise<MapPoints> {
   const pages: Page[] = [];
   let after: number | null = 0;
   while (after !== null) {
@@ -84,6 +88,7 @@ async function readMap(collectionId: number, signal: AbortSignal): Promise<MapPo
     if (isOther)
       pages.length = 0; // the map was made anew meanwhile
     else pages.push(page);
+    onProgress((pages.length * PAGE_POINTS) / Math.max(1, page.n_shapes));
     after = isOther ? 0 : page.next === null ? null : Number(page.next);
   }
   return pointsOf(pages);
@@ -92,7 +97,18 @@ async function readMap(collectionId: number, signal: AbortSignal): Promise<MapPo
 export const mapQuery = (collectionId: number) =>
   queryOptions({
     queryKey: ["table", collectionId, "map"],
-    queryFn: ({ signal }) => readMap(collectionId, signal),
+    queryFn: ({ signal, client }) =>
+      readMap(collectionId, signal, (share) =>
+        client.setQueryData(mapProgressQuery(collectionId).queryKey, Math.min(1, share)),
+      ),
     structuralSharing: false,
     staleTime: 60_000,
+  });
+
+/** How much of the map has been read, in [0, 1], while it is. */
+export const mapProgressQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["table", collectionId, "map progress"],
+    queryFn: () => 0,
+    staleTime: Number.POSITIVE_INFINITY,
   });

@@ -47,9 +47,14 @@ describe("paintPoints", () => {
 
 describe("stampOf", () => {
   it("covers the middle in full and is the same on every side", () => {
-    const { reach, cover } = stampOf(2.5);
-    const side = 2 * reach + 1;
-    expect(cover[reach * side + reach]).toBe(255);
+    const { dx, dy, cover } = stampOf(2.5, true);
+    const middle = dx.findIndex((x, k) => x === 0 && dy[k] === 0);
+    expect(cover[middle]).toBe(255);
     expect([...cover]).toEqual([...cover].reverse());
+  });
+
+  it("has hard edges where there are many points", () => {
+    expect([...stampOf(2.5, false).cover].every((share) => share === 255)).toBe(true);
+    expect([...stampOf(2.5, true).cover].some((share) => share < 255)).toBe(true);
   });
 });

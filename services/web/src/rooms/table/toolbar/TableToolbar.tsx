@@ -1,5 +1,6 @@
 import { useQuery } from "@tanstack/react-query";
 import { ArrowDownNarrowWide, ArrowUpNarrowWide, ChartScatter, ClipboardCheck, Palette } from "lucide-react";
+import type { ReactNode } from "react";
 import { useHasRole } from "../../../app/session/MeContext";
 import { Button, IconButton, Segmented, Select } from "../../../components";
 import { count } from "../../../components/numbers";
@@ -68,14 +69,19 @@ export function TableToolbar({ collectionId, state, nShapes }: TableToolbarProps
   );
 }
 
-function PanelButton(props: {
-  isOpen: boolean;
-  icon: React.ReactNode;
-  onClick: () => void;
-  children: string;
-}) {
-  const { isOpen, ...rest } = props;
-  return <Button size="small" variant={isOpen ? "secondary" : "quiet"} aria-pressed={isOpen} {...rest} />;
+function PanelButton(props: { isOpen: boolean; icon: ReactNode; onClick: () => void; children: string }) {
+  const { isOpen, children, ...rest } = props;
+  return (
+    <Button
+      size="small"
+      variant={isOpen ? "secondary" : "quiet"}
+      aria-pressed={isOpen}
+      title={children}
+      {...rest}
+    >
+      <span className={styles.panelName}>{children}</span>
+    </Button>
+  );
 }
 
 function OrderMenu({ collectionId, state }: { collectionId: number; state: TableViewState }) {
