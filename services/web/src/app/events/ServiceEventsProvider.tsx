@@ -41,7 +41,7 @@ function follow(
     void queries.invalidateQueries({
       predicate: (each) => events.some((event) => isStaleAfter(event, each.queryKey)),
     });
-  };
+  });
   const stop = listen({
     onEvent(event) {
       hub.publish(event);
