@@ -84,14 +84,15 @@ export function Viewport(props: ViewportProps) {
   useEffect(() => live.current?.gestures.adopt(), [toolKey, model]);
 
   return (
-    <section
-      ref={element}
-      className={classes(styles.viewport, isActive && styles.active)}
-      // biome-ignore lint/a11y/noNoninteractiveTabindex: keys turn the shape, and press at its middle
-      tabIndex={0}
-      aria-label={title === null ? name : `${name}: ${title}`}
-      onFocus={() => context.onEngage()}
-    >
+    <div className={styles.cell}>
+      <section
+        ref={element}
+        className={classes(styles.viewport, isActive && styles.active)}
+        // biome-ignore lint/a11y/noNoninteractiveTabindex: keys turn the shape, and press at its middle
+        tabIndex={0}
+        aria-label={title === null ? name : `${name}: ${title}`}
+        onFocus={() => context.onEngage()}
+      />
       {title !== null && (
         <span className={styles.title}>
           <Badge tone={isActive ? "accent" : "neutral"} title={title}>
@@ -99,9 +100,10 @@ export function Viewport(props: ViewportProps) {
           </Badge>
         </span>
       )}
+      {/* beside the view, which takes every press on it for a gesture */}
       {state.step !== "ready" && (
         <LoadingShape state={state} onGiveUp={props.onGiveUp} onRetry={props.onRetry} />
       )}
-    </section>
+    </div>
   );
 }
