@@ -19,6 +19,8 @@ export interface EventListener {
 }
 
 const REOPEN_MS = 4_000;
+/** Browsers open few connections to one service: tabs that nobody looks at leave theirs to others. */
+const HIDDEN_MS = 30_000;
 
 /** Listens until the function that it returns is called. */
 export function listen(listener: EventListener): () => void {
@@ -27,15 +29,36 @@ export function listen(listener: EventListener): () => void {
   return () => stream.disconnect();
 }
 
-/** One stream. Browsers resume one that breaks, but give up on one that was refused: that is opened anew. */
+/**
+ * One stream. Browsers resume one that breaks, but give up on one that was refused: that is opened anew. It rests while
+ * the page has been out of sight for a while, and goes on from the last id once it is looked at again.
+ */
 class EventStream {
   private source: EventSource | undefined;
   private reopening: ReturnType<typeof setTimeout> | undefined;
+  private resting: ReturnType<typeof setTimeout> | undefined;
   private lastId = "";
 
   constructor(private readonly listener: EventListener) {}
 
   connect(): void {
+    document.addEventListener("visibilitychange", this.follow);
+    this.open();
+  }
+
+  disconnect(): void {
+    document.removeEventListener("visibilitychange", this.follow);
+    clearTimeout(this.resting);
+    this.close();
+  }
+
+  private readonly follow = () => {
+    clearTimeout(this.resting);
+    if (document.visibilityState === "hidden") this.resting = setTimeout(() => this.close(), HIDDEN_MS);
+    else if (this.source === undefined) this.open();
+  };
+
+  private open(): void {
     const after = this.lastId === "" ? "" : `?after=${encodeURIComponent(this.lastId)}`;
     const source = new EventSource(`/api/v1/events${after}`, { withCredentials: true });
     this.source = source;
@@ -48,9 +71,10 @@ class EventStream {
     source.addEventListener("error", () => this.lose(source));
   }
 
-  disconnect(): void {
+  private close(): void {
     clearTimeout(this.reopening);
     this.source?.close();
+    this.source = undefined;
   }
 
   private begin(message: MessageEvent<string>): void {
@@ -68,6 +92,6 @@ class EventStream {
     this.listener.onConnection(false);
     if (source.readyState !== EventSource.CLOSED) return;
     clearTimeout(this.reopening);
-    this.reopening = setTimeout(() => this.connect(), REOPEN_MS);
+    this.reopening = setTimeout(() => this.open(), REOPEN_MS);
   }
 }

@@ -9,7 +9,7 @@ const MIN_POINTS = 2;
 const Y_AXIS_PX = 52;
 const MINUTE_S = 60;
 const X_AXIS_PX = 28;
-const CLOCK: Partial<uPlot.Axis> = { values: (_plot, times) => clockTimes(times) };
+const CLOCK: Partial<uPlot.Axis> = { values: (_plot, times) => clockTimes(times), space: 90 };
 const ROUND_BY_ROUND: Partial<uPlot.Axis> = { incrs: [1, 2, 5, 10, 20, 50, 100] };
 
 /** A chart in an element: made when it is connected, drawn anew when its data, its width or the scheme changes. */

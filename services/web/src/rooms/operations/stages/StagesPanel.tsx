@@ -73,7 +73,7 @@ const COLUMNS: readonly Column<Stage>[] = [
     isNumber: true,
     cell: ({ failed }) => <span className={failed > 0 ? styles.failed : undefined}>{whole(failed)}</span>,
   },
-  { id: "pace", header: "A minute", isNumber: true, cell: ({ per_min }) => decimal(per_min) },
+  { id: "pace", header: "A minute", isNumber: true, cell: ({ per_min }) => paceInWords(per_min) },
   {
     id: "eta",
     header: "Time left",
@@ -85,6 +85,11 @@ const COLUMNS: readonly Column<Stage>[] = [
   },
 ];
 
+/** Slow stages do less than one shape a minute. */
+function paceInWords(perMin: number): string {
+  return perMin > 0 && perMin < 1 ? perMin.toFixed(2) : decimal(perMin);
+}
+
 function paceChart(ops: Ops | undefined, history: readonly Sample[]): ChartData {
   return {
     x: history.map((sample) => sample.atS),
@@ -94,6 +99,6 @@ function paceChart(ops: Ops | undefined, history: readonly Sample[]): ChartData 
     })),
     top: 1,
     isTime: true,
-    format: decimal,
+    format: paceInWords,
   };
 }
