@@ -1,16 +1,17 @@
 import { Box, CircleAlert, ImageOff } from "lucide-react";
-import { useEffect, useRef, useState } from "react";
+import { useLayoutEffect, useRef, useState } from "react";
 import styles from "./ShapeTile.module.css";
 
 /** A shape's picture. It is asked for when it comes near, and no longer once it has been scrolled past. */
 export function TilePicture({ address, isFailed }: { address: string | null; isFailed: boolean }) {
   const [missing, setMissing] = useState<string | null>(null);
   const image = useRef<HTMLImageElement>(null);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const shown = image.current;
     if (shown === null || address === null) return undefined;
     shown.src = address;
-    // Taking an image out of the page does not stop its download; taking its address does.
+    // Taking an image out of the page does not stop its download; taking its address does. It has to be taken while
+    // the image is in the page, which effects of layout are early enough for: else Chromium keeps the element for good.
     return () => shown.removeAttribute("src");
   }, [address]);
   if (address === null || missing === address) {
