@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeVar
 
 from sqlalchemy import Engine, select
 
@@ -11,8 +12,7 @@ from partwise.store import tables as t
 from partwise.store.engine import reading
 from partwise_cli.bench.load_people import Hold
 
-Interval = tuple[Hashable, float, float]
-"""(whose or what, since, until), in seconds of one clock."""
+Subject = TypeVar("Subject", bound=Hashable)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +59,8 @@ def check_load(
         for row in leases
     ]
     counts: dict[tuple[int, int], int] = defaultdict(int)
-    for row in leases:
-        counts[row.person_id, row.shape_id] += 1
+    for lease_row in leases:
+        counts[lease_row.person_id, lease_row.shape_id] += 1
     return LoadChecks(
         len(leases),
         sum(map(len, recorded.values())),
@@ -75,9 +75,9 @@ def _end(released_s: float | None) -> float:
     return float("inf") if released_s is None else released_s
 
 
-def _overlapping(spans: Iterable[Interval]) -> list[Hashable]:
-    """What has two intervals that overlap."""
-    by_subject: dict[Hashable, list[tuple[float, float]]] = defaultdict(list)
+def _overlapping(spans: Iterable[tuple[Subject, float, float]]) -> list[Subject]:
+    """What has two intervals that overlap. spans : (whose or what, since, until), in seconds of one clock."""
+    by_subject: dict[Subject, list[tuple[float, float]]] = defaultdict(list)
     for subject, since, until in spans:
         by_subject[subject].append((since, until))
     return [

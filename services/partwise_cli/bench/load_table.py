@@ -60,9 +60,8 @@ def _fixed(query: Query) -> Draw:
 
 def orders() -> dict[str, Query]:
     """Every order and direction."""
-    named: dict[str, Query] = {"id": {}, "name": {"order": BY_NAME}} | {
-        name.value: {"order": name.value} for name in ScoreName
-    }
+    scores: dict[str, Query] = {name.value: {"order": name.value} for name in ScoreName}
+    named: dict[str, Query] = {"id": {}, "name": {"order": BY_NAME}, **scores}
     return {
         f"{name} {'down' if descending else 'up'}": {**query, "direction": "desc" if descending else "asc"}
         for name, query in named.items()

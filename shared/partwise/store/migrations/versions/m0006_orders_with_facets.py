@@ -28,8 +28,8 @@ def _names_of_facets() -> None:
     op.create_index("ix_shape_facet_by_id", "shape_facet", ["collection_id", "shape_id", *_FACETS])
     op.create_index("ix_shape_facet_by_name", "shape_facet", ["collection_id", "source_key", "shape_id", *_FACETS])
     for name, facet in _OWN_INDEXES.items():
-        columns = ["collection_id", facet, "shape_id", *(other for other in _FACETS if other != facet)]
-        op.create_index(f"ix_shape_facet_by_{name}", "shape_facet", columns)
+        others = (other for other in _FACETS if other != facet)
+        op.create_index(f"ix_shape_facet_by_{name}", "shape_facet", ["collection_id", facet, "shape_id", *others])
 
 
 def _facets_of_scores() -> None:
@@ -48,9 +48,9 @@ def _facets_of_scores() -> None:
     _index_scores("cluster", ["cluster"], ["state", "author_id"])
     for name, facet in (("author", "author_id"), ("failure", "failed_stage")):
         has_one = sa.text(f"{facet} IS NOT NULL")
-        _index_scores(name, [facet], ["state", "cluster"], sqlite_where=has_one, postgresql_where=has_one)
+        _index_scores(name, [facet], ["state", "cluster"], has_one)
 
 
-def _index_scores(name: str, facet: list[str], others: list[str], **where: sa.TextClause) -> None:
+def _index_scores(name: str, facet: list[str], others: list[str], where: sa.TextClause | None = None) -> None:
     columns = ["collection_id", "name", *facet, "value", "shape_id", *others]
-    op.create_index(f"ix_score_by_{name}", "score", columns, **where)
+    op.create_index(f"ix_score_by_{name}", "score", columns, sqlite_where=where, postgresql_where=where)
