@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from partwise.errors import NotFoundError
 from partwise.store.catalog import Catalog
-from partwise.store.records import Lease, Role
+from partwise.store.records import Lease
+from partwise_service.ownership import visible_row
 from partwise_service.schemas.queue import LeaseOut
 from partwise_service.security.identity import Identity
 
@@ -30,12 +30,4 @@ def visible_lease(catalog: Catalog, caller: Identity, lease_id: int) -> Lease:
     ------
     NotFoundError : it is not there, or not for them.
     """
-    missing = NotFoundError(f"there is no lease {lease_id} of yours; see /leases")
-    try:
-        lease = catalog.lease(lease_id)
-    except NotFoundError as error:
-        raise missing from error
-    is_theirs = lease.person_id == caller.person_id or caller.role.includes(Role.OPERATOR)
-    if not is_theirs or not caller.may_see(lease.collection_id):
-        raise missing
-    return lease
+    return visible_row(caller, lambda: catalog.lease(lease_id), f"there is no lease {lease_id} of yours; see /leases")
