@@ -107,16 +107,21 @@ def settings(
 
 def ingest(
     ws: WorkspaceArgument,
-    folder: Annotated[Path, typer.Argument(help="Folder of OFF, OBJ, PLY, STL or GLB files.", show_default=False)],
+    source: Annotated[
+        Path,
+        typer.Argument(help="OFF, OBJ, PLY, STL or GLB; a folder, zip or tar.gz of such.", show_default=False),
+    ],
     collection: CollectionOption = None,
 ) -> None:
     """Copy mesh files into a collection.  [dim]partwise ingest ws meshes/[/dim]"""
     from partwise.workspace.ingest import ingest_folder
+    from partwise.workspace.ingest_files import ingest_file
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
     with open_workspace(ws) as workspace, shape_progress("ingest") as on_progress:
-        report = ingest_folder(workspace, find_collection(workspace, collection), folder, on_progress)
+        take = ingest_file if source.is_file() else ingest_folder
+        report = take(workspace, find_collection(workspace, collection), source, on_progress)
     warning_lines([file.reason for file in report.refused])
     typer.echo(
         f"{counted(report.n_added, 'shape')} added, {report.n_unchanged:,} unchanged, {report.n_changed:,} changed, "
@@ -128,6 +133,7 @@ def ingest(
 
 def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
     """Remesh and describe new shapes.  [dim]partwise preprocess ws[/dim]"""
+    from partwise.workspace.ranking import bring_into_order
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.status import collection_status
     from partwise.workspace.workspace import open_workspace
@@ -138,6 +144,7 @@ def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> No
         found = find_collection(workspace, collection)
         with run_progress("preprocess") as tally:
             result = run(workspace, found, tally.on_progress, tally.on_event, moves.append)
+        bring_into_order(workspace, found)
         state = collection_status(workspace, found, MAX_REASONS)
     has_failed = result.n_failed > 0 or any(report.n_failed for report in moves)
     if has_failed:
@@ -246,7 +253,7 @@ def gc(
     typer.echo(
         f"{counted(report.n_unused_blocks, 'replaced block')} ({report.n_bytes / 1e6:.1f} MB), "
         f"{counted(report.n_orphan_blocks, 'block')} and {counted(report.n_unfinished, 'unfinished write')} "
-        "of crashed runs swept"
+        f"of crashed runs, {report.n_expired:,} expired uploads or exports swept"
     )
 
 

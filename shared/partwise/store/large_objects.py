@@ -135,14 +135,11 @@ def large_object_keys(arrays: ArrayStore, folder: str) -> list[str]:
 
 
 def sweep_expired(arrays: ArrayStore, folder: str, now: datetime) -> list[str]:
-    """Deletes what has expired directly in a folder; returns the keys of what is left."""
-    left = []
-    for key in large_object_keys(arrays, folder):
-        if expiry_of(key.rpartition("/")[2]) < now:
-            delete_large_object(arrays, key)
-        else:
-            left.append(key)
-    return left
+    """Deletes what has expired directly in a folder; returns its keys."""
+    expired = [key for key in large_object_keys(arrays, folder) if expiry_of(key.rpartition("/")[2]) < now]
+    for key in expired:
+        delete_large_object(arrays, key)
+    return expired
 
 
 def _chunk_key(key: str, n: int) -> str:

@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 
 from partwise.errors import ConflictError
+from partwise.store.large_objects import sweep_expired
 from partwise.store.records import Block
+from partwise.workspace.export_archive import EXPORTS
+from partwise.workspace.uploads import UPLOADS
 from partwise.workspace.workspace import Workspace
 
 PAGE = 1000
@@ -15,13 +18,14 @@ PAGE = 1000
 class GarbageReport:
     """Blocks that no current result needs, blocks that no catalog row names, and halves that killed writes left.
 
-    n_bytes : of the unused blocks.
+    n_bytes : of the unused blocks. n_expired : uploads and exports that nobody came for in time.
     """
 
     n_unused_blocks: int
     n_orphan_blocks: int
     n_unfinished: int
     n_bytes: int
+    n_expired: int
 
 
 def collect_garbage(workspace: Workspace, orphans_older_than: timedelta) -> GarbageReport:
@@ -42,7 +46,12 @@ def collect_garbage(workspace: Workspace, orphans_older_than: timedelta) -> Garb
     for name in orphans:
         workspace.arrays.delete_block(name)
     n_unfinished = workspace.arrays.sweep_unfinished(orphans_older_than)
-    return GarbageReport(n_unused, len(orphans), n_unfinished, n_bytes)
+    n_expired = sum(
+        len(sweep_expired(workspace.arrays, f"{folder}/{collection.id}", datetime.now(UTC)))
+        for collection in workspace.catalog.list_collections()
+        for folder in (UPLOADS, EXPORTS)
+    )
+    return GarbageReport(n_unused, len(orphans), n_unfinished, n_bytes, n_expired)
 
 
 def _delete_rows(workspace: Workspace, blocks: Sequence[Block]) -> Sequence[Block]:

@@ -1,6 +1,7 @@
 """init, settings, ingest, preprocess, retry, status, gc, migrate: what they say and how they end."""
 
 import json
+import zipfile
 from pathlib import Path
 from typing import get_args
 
@@ -107,6 +108,20 @@ def test_ingest_counts_what_it_did(invoke, empty: Path, tmp_path: Path, tetrahed
     assert first.stdout == "1 shape added, 0 unchanged, 0 changed, 0 files refused\n"
     assert second.stdout == "0 shapes added, 1 unchanged, 0 changed, 0 files refused\n"
     assert (first.exit_code, second.exit_code) == (0, 0)
+
+
+def test_ingest_takes_an_archive_and_a_single_mesh(invoke, empty: Path, tmp_path: Path, tetrahedron: TriMesh) -> None:
+    path = tmp_path / "b.off"
+    write_mesh(tetrahedron, path)
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.write(path, "deep/a.off")
+        archive.write(path, "../c.off")
+    results = [invoke("ingest", empty, source) for source in (tmp_path / "a.zip", path)]
+    assert [result.exit_code for result in results] == [1, 0]
+    assert "../c.off" in results[0].stderr
+    with open_workspace(empty) as workspace:
+        keys = [shape.source_key for shape in workspace.catalog.shapes(workspace.catalog.get_collection("mugs").id)]
+    assert keys == ["deep/a.off", "b.off"]
 
 
 def test_ingest_needs_a_folder(invoke, empty: Path) -> None:
@@ -250,7 +265,8 @@ def test_status_as_json(invoke, refined: Path) -> None:
 
 def test_gc_says_what_it_swept(invoke, refined: Path) -> None:
     result = invoke("gc", refined)
-    assert result.stdout == "0 replaced blocks (0.0 MB), 0 blocks and 0 unfinished writes of crashed runs swept\n"
+    swept = "0 replaced blocks (0.0 MB), 0 blocks and 0 unfinished writes of crashed runs"
+    assert result.stdout == f"{swept}, 0 expired uploads or exports swept\n"
     assert invoke("gc", refined, "--older-than-h", "-1").exit_code == 2
 
 
