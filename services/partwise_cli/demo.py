@@ -18,6 +18,7 @@ from partwise.workspace.first_shapes import select_first_shapes
 from partwise.workspace.ingest import ingest_folder
 from partwise.workspace.labelling import commit_labels, import_labels
 from partwise.workspace.queue import all_ranked
+from partwise.workspace.ranking import bring_into_order
 from partwise.workspace.segmentations import REMESH, Segmentation, reference_labels
 from partwise.workspace.shapes import pages_of_shapes, shape_mesh
 from partwise.workspace.workspace import INITIAL_CONFIG, Workspace, init_workspace, open_workspace
@@ -189,6 +190,7 @@ def _learn_and_report(
         with run_progress(name) as tally:
             run(workspace, collection, tally.on_progress, tally.on_event)
         watch.lap(name)
+    bring_into_order(workspace, collection)
     exported = out / "labels"
     export_labels(workspace, collection, Segmentation.REFINED, ExportFormat.PLY, exported)
     watch.lap("export")

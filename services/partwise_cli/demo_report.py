@@ -37,7 +37,8 @@ def print_report(report: DemoReport) -> None:
     }
     for label, value in lines.items():
         console().print(f"[bold]{label:<10}[/bold] {escape(value)}", soft_wrap=True)
-    typer.echo(f"\nLook at the queue:  partwise queue {report.workspace}")
+    typer.echo(f"\nLook at the queue:   partwise queue {report.workspace}")
+    typer.echo(f"Work in the browser: partwise up {report.workspace}")
 
 
 def _remeshing(made: Remeshing) -> str:

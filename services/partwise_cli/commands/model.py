@@ -28,12 +28,16 @@ def train(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
 
 def evaluate(ws: WorkspaceArgument, collection: CollectionOption = None) -> None:
     """Predict and score every described shape.  [dim]partwise evaluate ws[/dim]"""
+    from partwise.workspace.ranking import bring_into_order
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
     from partwise_workers.passes import evaluate as run
 
-    with open_workspace(ws) as workspace, run_progress("evaluate") as tally:
-        result = run(workspace, find_collection(workspace, collection), tally.on_progress, tally.on_event)
+    with open_workspace(ws) as workspace:
+        found = find_collection(workspace, collection)
+        with run_progress("evaluate") as tally:
+            result = run(workspace, found, tally.on_progress, tally.on_event)
+        bring_into_order(workspace, found)
     _finish("evaluated", result.n_done, result.n_failed)
 
 

@@ -32,12 +32,14 @@ def select(
 ) -> None:
     """Choose what to label first.  [dim]partwise select ws -k 5 -n 2[/dim]"""
     from partwise.workspace.first_shapes import select_first_shapes
+    from partwise.workspace.ranking import bring_into_order
     from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
     with open_workspace(ws) as workspace:
         found = find_collection(workspace, collection)
         firsts = select_first_shapes(workspace, found, n_clusters, n_per_cluster, seed)
+        bring_into_order(workspace, found)
         shapes = workspace.catalog.shapes_by_id([first.shape_id for first in firsts])
     rows = [(first.cluster, shapes[first.shape_id].source_key) for first in firsts]
     if as_json:

@@ -7,12 +7,12 @@ from partwise.errors import NotEnoughDataError
 from partwise.store.records import JobKind, Model, ShapeState
 from partwise.workspace.first_shapes import select_first_shapes
 from partwise.workspace.progress import RunProgress
-from partwise.workspace.ranking import refill_queue
+from partwise.workspace.ranking import make_orderings, refill_queue
 from partwise.workspace.relabel import MoveReport
 from partwise.workspace.similarity import most_similar_first
 from partwise_cli.jobs.export import export
 from partwise_cli.jobs.ingest import ingest
-from partwise_cli.jobs.reranking import Reranking, make_orderings
+from partwise_cli.jobs.reranking import Reranking
 from partwise_cli.jobs.stage_events import StageTally
 from partwise_cli.jobs.turns import Turn
 from partwise_cli.jobs.work import Handler, Outcome, Work
@@ -34,7 +34,7 @@ def preprocess(work: Work) -> Outcome:
     if catalog.embedding(work.collection.id) is None:
         _select(work)
     Reranking(work).rank()
-    make_orderings(work)
+    make_orderings(work.workspace, work.collection)
     if catalog.latest_model(work.collection.id) is not None:
         catalog.enqueue_job(work.collection.id, JobKind.EVALUATE)
     moved = {"n_moved": moves[0].n_moved, "n_in_review": moves[0].n_in_review} if moves else {}
@@ -77,7 +77,7 @@ def evaluate(work: Work) -> Outcome:
         n_done, n_failed = n_done + result.n_done, n_failed + result.n_failed
         if _newest_model(work).id == model.id:
             break
-    make_orderings(work)
+    make_orderings(work.workspace, work.collection)
     return _outcome(f"evaluated by model version {model.version}", n_done, n_failed)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from partwise.store.records import EventKind
 from partwise.workspace.choices import ScoreName
-from partwise.workspace.ranking import materialise_ordering, rank_queue
+from partwise.workspace.ranking import rank_queue
 from partwise_cli.jobs.work import Work
 
 MAX_SHARE = 0.05
@@ -33,10 +33,3 @@ class Reranking:
             self._work.add_event(EventKind.QUEUE, {"re_ranked": n_moved})
         ended = self._clock()
         self._next_at = ended + max(self._work.workspace.config.jobs.rank_every_s, (ended - began) / MAX_SHARE)
-
-
-def make_orderings(work: Work) -> None:
-    """Makes the orders anew in which one jumps about the table of shapes: by id, and by each score there is."""
-    has_scores = work.workspace.catalog.latest_model(work.collection.id) is not None
-    for score in (None, *(ScoreName if has_scores else ())):
-        materialise_ordering(work.workspace, work.collection, score)

@@ -11,6 +11,7 @@ import numpy as np
 
 from partwise.store.catalog import Catalog
 from partwise.store.records import Collection, Ordering
+from partwise.workspace.choices import ScoreName
 from partwise.workspace.shapes import PAGE
 from partwise.workspace.workspace import Workspace
 
@@ -96,6 +97,19 @@ def materialise_ordering(workspace: Workspace, collection: Collection, score_nam
         pass
     found = workspace.catalog.ordering(collection.id, score_name)
     return ordering if found is None else found
+
+
+def make_orderings(workspace: Workspace, collection: Collection) -> None:
+    """Makes the orders anew in which one jumps about the table of shapes: by id, and by each score there is."""
+    has_scores = workspace.catalog.latest_model(collection.id) is not None
+    for score in (None, *(ScoreName if has_scores else ())):
+        materialise_ordering(workspace, collection, score)
+
+
+def bring_into_order(workspace: Workspace, collection: Collection) -> None:
+    """Ranks the queue, and makes the table's orders anew: after shapes have become ready, were chosen or scored."""
+    rank_queue(workspace, collection, ScoreName.ENTROPY)
+    make_orderings(workspace, collection)
 
 
 def _waiting_by_score(

@@ -8,7 +8,15 @@ from hypothesis import strategies as st
 from partwise.store.records import NewClaim
 from partwise.store.sql.places import UNRANKED
 from partwise.workspace import ranking
-from partwise.workspace.ranking import BATCH, diversified, materialise_ordering, rank_queue, refill_queue, score_rank
+from partwise.workspace.ranking import (
+    BATCH,
+    bring_into_order,
+    diversified,
+    materialise_ordering,
+    rank_queue,
+    refill_queue,
+    score_rank,
+)
 
 
 def test_clusters_take_turns_in_order_of_their_best() -> None:
@@ -48,6 +56,16 @@ def test_the_least_certain_shape_is_next(filled) -> None:
     assert rank_queue(filled.workspace, filled.collection, "entropy") == 3
     assert _order(filled, "bob") == [c, b, a]
     assert rank_queue(filled.workspace, filled.collection, "entropy") == 0
+
+
+def test_queue_and_table_are_brought_into_the_order_of_new_scores(filled) -> None:
+    filled.described()
+    filled.evaluated()
+    bring_into_order(filled.workspace, filled.collection)
+    a, b, c = filled.ids.values()
+    assert _order(filled, "ann") == [c, b, a]
+    catalog = filled.workspace.catalog
+    assert [catalog.ordering(filled.collection.id, score) is None for score in (None, "entropy")] == [False, False]
 
 
 def test_shapes_of_one_cluster_do_not_follow_on_each_other(filled) -> None:
