@@ -4,7 +4,7 @@ import type { ConfirmOutcome } from "../../../drafts/confirming";
 import type { Lease, LeaseApi } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
-import { conflict } from "../../../drafts/testing";
+import { conflict, settled } from "../../../drafts/testing";
 import { Desk } from "./desk";
 import type { HeldShape, HeldState } from "./heldShape";
 
@@ -76,6 +76,7 @@ function held({ lease }: Renewed<Lease>): HeldShape {
     open: { draft: { confirm }, editor: { sha256: () => "sum" } },
     load: () => loaded.push(lease.shape_id),
     begin: async () => {},
+    seen: async () => {},
     takenUp: async () => {
       const own = queue.held.find((each) => each.shapeId === lease.shape_id);
       if (own !== undefined) own.isPrefetched = false;
@@ -87,6 +88,7 @@ function held({ lease }: Renewed<Lease>): HeldShape {
 async function started(named: number[] = []): Promise<Desk> {
   const desk = new Desk({ leases: queue.api, hold: held }, 9, () => ({ partIds: [1], start: "best" }));
   await desk.start(named);
+  await settled();
   return desk;
 }
 
@@ -112,6 +114,7 @@ describe("a desk", () => {
     const desk = await started();
     await desk.confirm(desk.state.get().current as HeldShape);
     expect(current(desk)).toBe(2);
+    await settled();
     expect(loaded).toEqual([1, 2, 3]);
     expect(closed).toEqual([1]);
   });

@@ -54,7 +54,7 @@ export class Desk {
       if (first !== undefined) this.show(first);
       else if (refused.length === 0) await this.claimNext();
       else this.change({ phase: "failed", why: refused.map((each) => each.why).join(" ") });
-      await this.loadAhead();
+      void this.loadAhead();
     });
   }
 
@@ -62,7 +62,7 @@ export class Desk {
   async takeNext(): Promise<void> {
     await this.attempt(async () => {
       await this.claimNext();
-      await this.loadAhead();
+      void this.loadAhead();
     });
   }
 
@@ -144,7 +144,7 @@ export class Desk {
 
   private takeHeld(leased: Renewed<Lease>, since: number): void {
     if (this.all().some((shape) => shape.shapeId === leased.lease.shape_id)) return;
-    if (leased.lease.is_prefetched) this.ahead = this.loaded(leased, false, since);
+    if (leased.lease.is_prefetched) this.ahead = this.parts.hold(leased, false);
     else this.take(leased, false, since);
   }
 
@@ -163,12 +163,18 @@ export class Desk {
     else if (this.state.get().shapes.length === 0) this.change({ phase: "empty", current: null });
   }
 
+  /** Once the shape in hand is to be seen: the next one must not hold it up. */
   private async loadAhead(): Promise<void> {
-    if (this.ahead !== null || this.isClosed || this.state.get().phase !== "working") return;
-    const leased = await this.parts.leases.next(this.collectionId, true).catch(() => null); // it can be claimed when needed
-    if (leased === null || this.isClosed) return;
-    if (this.all().some((shape) => shape.shapeId === leased.lease.shape_id)) return;
-    this.ahead = this.loaded(leased, false, performance.now());
+    if (this.isClosed || this.state.get().phase !== "working") return;
+    if (this.ahead === null) {
+      const leased = await this.parts.leases.next(this.collectionId, true).catch(() => null); // claimed when needed, then
+      if (leased === null || this.all().some((shape) => shape.shapeId === leased.lease.shape_id)) return;
+      this.ahead = this.parts.hold(leased, false);
+    }
+    const { ahead } = this;
+    if (this.isClosed) return await ahead.close();
+    await this.state.get().current?.seen();
+    if (!this.isClosed) ahead.load(this.opening(), performance.now());
   }
 
   private take(leased: Renewed<Lease>, isNamed: boolean, since: number): HeldShape {

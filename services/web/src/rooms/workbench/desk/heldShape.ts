@@ -6,7 +6,7 @@ import { LeaseKeeper, type Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
 import { prepareMesh } from "../../../viewer/prepareMesh";
 import { ShapeModel } from "../../../viewer/shapeModel";
-import { OpenShape } from "../shape/openShape";
+import { type Draft, OpenShape } from "../shape/openShape";
 import {
   fetchDraftBase,
   fetchFacts,
@@ -34,6 +34,17 @@ interface StartLabels {
   readonly labels: Uint16Array;
 }
 
+interface Loading {
+  readonly model: Promise<ShapeModel>;
+  readonly facts: Promise<ShapeFacts>;
+  readonly start: Promise<StartLabels | null>;
+}
+
+interface Drafted {
+  readonly draft: Draft;
+  readonly base: Uint16Array | null;
+}
+
 const STARTS: Readonly<Record<StartChoice, readonly Segmentation[]>> = {
   best: ["refined", "predicted"],
   refined: ["refined"],
@@ -47,7 +58,8 @@ export class HeldShape {
   /** What a reviewer wrote when they sent the labels back; null if they did not. */
   readonly reworkNote = new Observable<string | null>(null);
   readonly keeper: LeaseKeeper<Lease>;
-  private loading: Promise<[ShapeModel, ShapeFacts, StartLabels | null]> | null = null;
+  private loading: Loading | null = null;
+  private drafting: Promise<Drafted> | null = null;
   private takingUp: Promise<void> | null = null;
   private hasBegun = false;
   private isClosed = false;
@@ -75,11 +87,14 @@ export class HeldShape {
   }
 
   /** Fetches what can be had before work begins: mesh, facts, labels to start from. */
-  load(opening: Opening, since: number): void {
-    this.loading ??= Promise.all([this.shown(since), this.known(), this.startLabels(opening.start)]);
-    this.loading.catch(() => {
+  load(opening: Opening, since: number): Loading {
+    if (this.loading !== null) return this.loading;
+    const loading = { model: this.shown(since), facts: this.known(), start: this.startLabels(opening.start) };
+    this.loading = loading;
+    Promise.all(Object.values(loading)).catch(() => {
       this.loading = null; // `begin` says so; trying again fetches again
     });
+    return loading;
   }
 
   /** Ends once the service knows that the shape is worked on, where it was loaded ahead: it hands it out again else. */
@@ -92,13 +107,18 @@ export class HeldShape {
   async begin(opening: Opening): Promise<void> {
     if (this.isClosed || this.hasBegun) return;
     this.hasBegun = true;
-    this.load(opening, performance.now());
+    const loading = this.load(opening, performance.now());
     try {
       await this.takenUp();
-      const [model, facts, start] = await (this.loading as NonNullable<typeof this.loading>);
-      const open = await this.opened(model, facts, opening);
+      this.drafting ??= loading.facts.then((facts) => this.drafted(facts));
+      const [model, { draft, base }, start] = await Promise.all([
+        loading.model,
+        this.drafting,
+        loading.start,
+      ]);
+      const open = await OpenShape.open(model, draft, base, opening.partIds);
       if (this.isClosed) return await open.close();
-      if (open.draft.strokes.length === 0 && open.draft.draft.base_revision === null && start !== null) {
+      if (draft.strokes.length === 0 && base === null && start !== null) {
         await open.replaceLabels("start_from", { from: start.from }, start.labels);
       }
       this.state.set({ step: "ready", model, open });
@@ -106,6 +126,20 @@ export class HeldShape {
       this.hasBegun = false;
       this.state.set({ step: "failed", why: error instanceof Error ? error.message : String(error) });
     }
+  }
+
+  /** Ends once the surface shows, or will not. */
+  seen(): Promise<void> {
+    return new Promise((resolve) => {
+      const stop = this.state.subscribe(check);
+      const state = this.state;
+      function check() {
+        if (state.get().step === "mesh") return;
+        stop();
+        resolve();
+      }
+      check();
+    });
   }
 
   /** After `begin` failed. */
@@ -119,7 +153,10 @@ export class HeldShape {
     this.keeper.stop();
     const state = this.state.get();
     if (state.step === "ready") await state.open.close();
-    else if (state.step === "labels") state.model.dispose();
+    else {
+      if (state.step === "labels") state.model.dispose();
+      await this.drafting?.then(({ draft }) => draft.close()).catch(() => {}); // it was not opened after all
+    }
   }
 
   private async shown(since: number): Promise<ShapeModel> {
@@ -138,15 +175,20 @@ export class HeldShape {
     return facts;
   }
 
-  private async opened(model: ShapeModel, facts: ShapeFacts, opening: Opening): Promise<OpenShape> {
+  private async drafted(facts: ShapeFacts): Promise<Drafted> {
     const goesOn = this.isNamed || this.reworkNote.get() !== null;
-    const wanted = goesOn ? facts.headRevision : null;
-    const draft = await DraftSession.open(this.parts, this.keeper, wanted);
-    const base = draft.draft.base_revision === null ? null : await fetchDraftBase(draft.draft.id);
-    return OpenShape.open(model, draft, base, opening.partIds);
+    try {
+      const draft = await DraftSession.open(this.parts, this.keeper, goesOn ? facts.headRevision : null);
+      const { id, base_revision } = draft.draft;
+      return { draft, base: base_revision === null ? null : await fetchDraftBase(id) };
+    } catch (error) {
+      this.drafting = null;
+      throw error;
+    }
   }
 
   private async startLabels(choice: StartChoice): Promise<StartLabels | null> {
+    if (this.lease.model_version === null) return null; // no model has seen it
     for (const from of STARTS[choice]) {
       try {
         return { from, labels: await fetchLabels(this.shapeId, from) };
