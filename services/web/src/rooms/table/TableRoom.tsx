@@ -46,7 +46,15 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
     client.invalidateQueries({ queryKey: ["table", collectionId, "count"] });
     setGeneration((held) => held + 1);
   };
-  const { none } = selection;
+  const { none, refresh } = selection;
+  useEffect(() => {
+    const shown: ShapeRow[] = [];
+    for (let place = window.first; place <= window.last; place++) {
+      const row = rows.rowAt(place);
+      if (row) shown.push(row);
+    }
+    refresh(shown); // the same selection, unless one of its shapes has changed
+  });
   // biome-ignore lint/correctness/useExhaustiveDependencies: another list begins with nothing chosen
   useEffect(() => none(), [view.filters, collectionId]);
 

@@ -28,7 +28,9 @@ export function AcceptDialog({ collectionId, rows, teller, onClose }: ShapeActio
       onClose();
       void client.invalidateQueries({ queryKey: ["accepts", collectionId] });
       const blind =
-        outcome.rechecks > 0 ? `accepted, ${outcome.rechecks} others queued for a blind check` : "accepted";
+        outcome.rechecks > 0
+          ? `accepted, ${count(outcome.rechecks, "other")} queued for a blind check`
+          : "accepted";
       teller.tell(outcome, rows, blind, "accepted");
     },
   });

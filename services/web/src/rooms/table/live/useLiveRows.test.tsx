@@ -7,7 +7,7 @@ import type { EventKind } from "../../../api/events";
 import { EventHub } from "../../../app/events/EventHub";
 import { ServiceEventsContext } from "../../../app/events/useServiceEvents";
 import type { RowPage } from "../rows/shapeRows";
-import { fetchRows, pageQuery, type RowList } from "../rows/tableQueries";
+import { fetchNamedRows, fetchRows, pageQuery, type RowList } from "../rows/tableQueries";
 import { aPage, aRow } from "../rows/testing";
 import { NO_FILTERS } from "../view/tableView";
 import { useLiveRows } from "./useLiveRows";
@@ -15,6 +15,7 @@ import { useLiveRows } from "./useLiveRows";
 vi.mock("../rows/tableQueries", async (original) => ({
   ...(await original<typeof import("../rows/tableQueries")>()),
   fetchRows: vi.fn(),
+  fetchNamedRows: vi.fn(),
 }));
 
 const LIST: RowList = {
@@ -90,6 +91,20 @@ describe("useLiveRows", () => {
       [1, 0.1],
       [2, 0.9],
     ]);
+  });
+
+  it("shows how a shape stands that no longer belongs to the list, and leaves it where it is", async () => {
+    served.mockResolvedValue(aPage([aRow({ id: 1 })]));
+    vi.mocked(fetchNamedRows).mockResolvedValue([aRow({ id: 2, state: "confirmed" })]);
+    const { result, publish, rows } = shown();
+    publish("shape", { shape_id: 2, what: "labelled" });
+    await pass();
+    expect(fetchNamedRows).toHaveBeenCalledWith(LIST, [2]);
+    expect(rows().map((row) => [row.id, row.state])).toEqual([
+      [1, "ready"],
+      [2, "confirmed"],
+    ]);
+    expect(result.current).toBe(true);
   });
 
   it("keeps what is shown where the service cannot be reached", async () => {

@@ -3,8 +3,8 @@ import { type QueryClient, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useRef, useState } from "react";
 import type { ServiceEvent } from "../../../api/events";
 import { useServiceEvents } from "../../../app/events/useServiceEvents";
-import { isReordered, PAGE_ROWS, patched, type RowPage, renewed } from "../rows/shapeRows";
-import { fetchRows, listKey, pageQuery, type RowList } from "../rows/tableQueries";
+import { isReordered, PAGE_ROWS, patched, type RowPage, renewed, type ShapeRow } from "../rows/shapeRows";
+import { fetchNamedRows, fetchRows, listKey, pageQuery, type RowList } from "../rows/tableQueries";
 import { type RowChange, rowChangeOf } from "./rowChange";
 
 /** Events come in bursts; pages are read anew once for each. */
@@ -38,6 +38,7 @@ export function useLiveRows(list: RowList): boolean {
 /** Reads pages that are held anew, a moment after the first event that concerns them. */
 class Renewal {
   private readonly pages = new Set<number>();
+  private readonly shapeIds = new Set<number>();
   private timer: ReturnType<typeof setTimeout> | undefined;
   private readonly stopping = new AbortController();
 
@@ -53,6 +54,7 @@ class Renewal {
       else if (rows.items.some((row) => row.id === change.shapeId)) {
         this.client.setQueryData(this.keyOf(page), patched(rows, change.shapeId, change.known));
         this.pages.add(page);
+        this.shapeIds.add(change.shapeId);
       }
     }
     if (this.pages.size > 0) this.timer ??= setTimeout(() => void this.read(), GATHER_MS);
@@ -66,6 +68,8 @@ class Renewal {
   private async read(): Promise<void> {
     const pages = [...this.pages];
     this.pages.clear();
+    const changed = [...this.shapeIds];
+    this.shapeIds.clear();
     this.timer = undefined;
     for (const page of pages) {
       const before = this.client.getQueryData<RowPage>(this.keyOf(page));
@@ -74,11 +78,23 @@ class Renewal {
         const fresh = await fetchRows(this.list, page * PAGE_ROWS, PAGE_ROWS, this.stopping.signal);
         const held = this.client.getQueryData<RowPage>(this.keyOf(page)) ?? before;
         if (isReordered(held, fresh)) this.onReordered();
-        this.client.setQueryData(this.keyOf(page), renewed(held, fresh));
+        const gone = await this.goneFrom(held, fresh, changed);
+        this.client.setQueryData(
+          this.keyOf(page),
+          renewed(held, { ...fresh, items: [...fresh.items, ...gone] }),
+        );
       } catch {
         return; // the service cannot be reached, which the bar shows; the next event tries again
       }
     }
+  }
+
+  /** Shapes that changed and no longer belong where they are shown, as in a list of those that wait. */
+  private goneFrom(held: RowPage, fresh: RowPage, changed: readonly number[]): Promise<readonly ShapeRow[]> {
+    const there = new Set(fresh.items.map((row) => row.id));
+    const gone = held.items.filter((row) => changed.includes(row.id) && !there.has(row.id));
+    const ids = gone.map((row) => row.id);
+    return ids.length === 0 ? Promise.resolve([]) : fetchNamedRows(this.list, ids);
   }
 
   private held(): [number, RowPage][] {
