@@ -17,6 +17,7 @@ import { useOpsHistory } from "./useOpsHistory";
 /** How the machine and the people are doing, what has failed, and what to do about it. */
 export function OperationsRoom({ collectionId }: RoomProps) {
   const { ops, history } = useOpsHistory(collectionId);
+  const hasFigures = ops.data !== undefined || ops.isPending; // or they are on their way
   return (
     <div className={styles.page}>
       <header className={styles.head}>
@@ -33,15 +34,15 @@ export function OperationsRoom({ collectionId }: RoomProps) {
       )}
       {ops.data ? <KeyFigures ops={ops.data} /> : !ops.error && <Skeleton height={74} />}
       <div className={styles.grid}>
-        <StagesPanel ops={ops.data} history={history} className={styles.whole} />
+        {hasFigures && <StagesPanel ops={ops.data} history={history} className={styles.whole} />}
         <JobsPanel collectionId={collectionId} className={styles.whole} />
         <FailuresPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
-        <QueuePanel ops={ops.data} history={history} />
+        {hasFigures && <QueuePanel ops={ops.data} history={history} />}
         <LeasesPanel collectionId={collectionId} />
         <PeoplePanel collectionId={collectionId} className={styles.whole} />
         <RoundsPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
-        <WorkersPanel ops={ops.data} />
-        <StoragePanel ops={ops.data} />
+        {hasFigures && <WorkersPanel ops={ops.data} />}
+        {hasFigures && <StoragePanel ops={ops.data} />}
       </div>
     </div>
   );

@@ -1,0 +1,116 @@
+// @vitest-environment jsdom
+import { QueryClientProvider } from "@tanstack/react-query";
+import { cleanup, fireEvent, render, screen, waitFor } from "@testing-library/react";
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { Problem } from "../../api/problem";
+import { newQueryClient } from "../../api/queries";
+import { CollectionContext } from "../../app/CollectionContext";
+import { ToastProvider } from "../../components";
+import { OperationsRoom } from "./OperationsRoom";
+
+const AT = "2026-11-22T12:00:00Z";
+const OPS = {
+  measured_at: AT,
+  states: { ready: 12, confirmed: 3 },
+  stages: [{ stage: "mesh", done: 14, failed: 1, remaining: 0, per_min: 2.5, eta_s: null }],
+  window_min: 15,
+  failures: { error: 1, memory: 0 },
+  queue: { free: 9, held: 1, assigned: 0, oldest_at: AT },
+  leases: { held: 1, prefetched: 0, expired: 0, people: 1 },
+  model_version: 2,
+  score_name: "entropy",
+  freshness: [{ model_version: 2, shapes: 12, share: 1 }],
+  open_reviews: 0,
+  blocks: [],
+  disk: { database_bytes: 1000, array_bytes: 2000, free_bytes: 1e12 },
+  workers: [],
+};
+const FAILURE = {
+  shape_id: 5,
+  source_key: "broken.off",
+  stage: "mesh",
+  kind: "error",
+  message: "broken.off: an ASCII OFF file must start with OFF",
+  attempts: 1,
+  at: AT,
+};
+const EMPTY = { items: [], next: null };
+
+const { service } = vi.hoisted(() => ({
+  service: { answers: {} as Record<string, (init: unknown) => unknown> },
+}));
+
+vi.mock("../../api/client", () => {
+  const ask = async (path: string, init: unknown) => ({ data: service.answers[path]?.(init) });
+  return {
+    api: { GET: ask, POST: ask },
+    body: async (call: Promise<{ data: unknown }>) => (await call).data,
+  };
+});
+vi.mock("./charts/useLineChart", () => ({ useLineChart: () => false })); // jsdom draws nothing
+
+const IN = "/api/v1/collections/{collection_id}";
+
+beforeEach(() => {
+  service.answers = {
+    [`${IN}/ops`]: () => OPS,
+    [`${IN}/jobs`]: () => EMPTY,
+    [`${IN}/failures`]: () => ({ items: [FAILURE], next: null }),
+    [`${IN}/leases`]: () => EMPTY,
+    [`${IN}/rounds`]: () => ({ score_name: "entropy", items: [] }),
+    "/api/v1/ops/people": () => ({ days: 30, items: [] }),
+    "/api/v1/people": () => EMPTY,
+  };
+});
+afterEach(cleanup);
+
+function show(): void {
+  const collection = { id: 3, name: "chairs", settings: {}, schema_version: 1, created_at: AT };
+  render(
+    <QueryClientProvider client={newQueryClient()}>
+      <ToastProvider>
+        <CollectionContext value={collection}>
+          <OperationsRoom collectionId={3} />
+        </CollectionContext>
+      </ToastProvider>
+    </QueryClientProvider>,
+  );
+}
+
+it("names a shape that failed, with its reason, and what kind of failure it is", async () => {
+  show();
+  const row = (await screen.findByText("broken.off")).closest("tr");
+  expect(row?.textContent).toContain("Refused: an ASCII OFF file must start with OFF");
+});
+
+it("tries what was chosen again", async () => {
+  const asked = vi.fn(() => ({ n_retried: 1, job: null }));
+  service.answers[`${IN}/failures/retry`] = asked;
+  show();
+  fireEvent.click(await screen.findByLabelText("Choose broken.off"));
+  fireEvent.click(screen.getByRole("button", { name: "Try 1 again" }));
+  await waitFor(() => expect(asked).toHaveBeenCalledOnce());
+  expect(asked).toHaveBeenCalledWith(expect.objectContaining({ body: { text: "", shape_ids: [5] } }));
+  expect(await screen.findByText("1 shape will be tried again as soon as a worker is free.")).toBeDefined();
+});
+
+it("names the tab and shows key figures", async () => {
+  show();
+  expect((await screen.findByText("of 15 shapes, 20%")).textContent).toBe("of 15 shapes, 20%");
+  expect(document.title).toBe("Operations · chairs · Partwise");
+});
+
+it("says what to do where figures cannot be read, and keeps the lists", async () => {
+  service.answers[`${IN}/ops`] = () => {
+    throw new Problem({
+      type: "urn:partwise:problem:conflict",
+      title: "",
+      status: 409,
+      detail: "Busy; try again.",
+    });
+  };
+  show();
+  expect((await screen.findByRole("alert")).textContent).toContain("Busy; try again.");
+  expect(await screen.findByText("broken.off")).toBeDefined();
+  expect(screen.queryByRole("heading", { name: "Stages" })).toBeNull();
+});
