@@ -21,6 +21,7 @@ import { nextCount, type Views } from "./stage/views";
 import { ToolOptions } from "./tools/ToolOptions";
 import { ToolRail } from "./tools/ToolRail";
 import type { ToolShelf } from "./tools/toolSettings";
+import { useKnownParts } from "./tools/useKnownParts";
 import { usePatches } from "./tools/usePatches";
 import { useRefinement } from "./tools/useRefinement";
 import styles from "./Workbench.module.css";
@@ -48,6 +49,7 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
   const patches = usePatches(open, settings.tool === "patches", settings.nPatches, settings.method);
   const refinement = useRefinement(open);
   const confirming = useConfirming(desk, held);
+  useKnownParts(shelf, open, parts);
   const up = upAxisOf(collection.settings.up);
   const changeViews = (some: Partial<Views>) => setViews((known) => ({ ...known, ...some }));
   const look = (name?: NamedView) => active.current?.view.frame(name);

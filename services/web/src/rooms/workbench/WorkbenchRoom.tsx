@@ -24,7 +24,7 @@ export function WorkbenchRoom({ collectionId }: RoomProps) {
   const schema = useQuery(partsQuery(collectionId));
   const [shelf] = useState(() => new ToolShelf(localStorage));
   const parts = schema.data?.parts ?? NO_PARTS;
-  const partIds = useMemo(() => parts.map((part) => part.id), [parts]);
+  const partIds = useMemo(() => schema.data?.parts.map((part) => part.id) ?? null, [schema.data]);
   const { start } = useObservable(shelf.settings);
   const opened = useDesk(collectionId, me.person_id, named, { partIds, start });
   if (schema.error) {

@@ -25,7 +25,8 @@ export type HeldState =
   | { readonly step: "failed"; readonly why: string };
 
 export interface Opening {
-  readonly partIds: readonly number[];
+  /** Null while they are not known. */
+  readonly partIds: readonly number[] | null;
   readonly start: StartChoice;
 }
 

@@ -20,7 +20,7 @@ beforeEach(() => {
   shown = { labels: null, nRecoloured: 0 };
 });
 
-async function opened(): Promise<OpenShape> {
+async function opened(partIds: readonly number[] | null = [1, 2, 3]): Promise<OpenShape> {
   const corners = Float32Array.from({ length: 3 * (N_FACES + 2) }, (_, at) =>
     at % 3 === 0 ? at / 6 : (at * at) % 5,
   );
@@ -47,7 +47,7 @@ async function opened(): Promise<OpenShape> {
     openDraft: async () => service.record,
   };
   const draft = await DraftSession.open(parts, new LeaseKeeper(leases, clock, renewed), null);
-  return OpenShape.open(model, draft, null, [1, 2, 3]);
+  return OpenShape.open(model, draft, null, partIds);
 }
 
 const assign = (first: number, count: number, label: number): Operation => ({
@@ -72,6 +72,15 @@ describe("a shape in hand", () => {
     shape.perform(assign(0, 2, 1));
     expect(shape.perform(assign(0, 2, 1))).toBeNull();
     shape.redo();
+    await settled();
+    expect(service.log).toHaveLength(1);
+  });
+
+  it("takes any part until the collection's are known, then those only", async () => {
+    const shape = await opened(null);
+    shape.perform(assign(0, 1, 9));
+    shape.setParts([1]);
+    expect(() => shape.perform(assign(1, 1, 9))).toThrow("part of the collection");
     await settled();
     expect(service.log).toHaveLength(1);
   });

@@ -27,7 +27,7 @@ export class OpenShape {
     readonly draft: Draft,
     private readonly base: Uint16Array,
     private current: LabelEditor,
-    private partIds: readonly number[],
+    private partIds: readonly number[] | null,
   ) {
     this.opened = current.labels.slice();
     model.setLabels(current.labels);
@@ -41,7 +41,7 @@ export class OpenShape {
     model: ShapeModel,
     draft: Draft,
     base: Uint16Array | null,
-    partIds: readonly number[],
+    partIds: readonly number[] | null,
   ): Promise<OpenShape> {
     const start = base ?? new Uint16Array(model.mesh.nFaces);
     const shape = new OpenShape(model, draft, start, await edited(model, start, draft.strokes), partIds);
@@ -64,7 +64,8 @@ export class OpenShape {
     return this.draft.canEdit && kind !== "conflict" && kind !== "closed" && kind !== "refused";
   }
 
-  setParts(partIds: readonly number[]): void {
+  /** From now on, strokes may only give these parts; null while they are not known. */
+  setParts(partIds: readonly number[] | null): void {
     this.partIds = partIds;
     this.current.restrictTo(partIds);
   }
@@ -153,7 +154,10 @@ export class OpenShape {
   }
 
   private async follow(stroke: StrokeJson): Promise<void> {
-    const change = this.current.apply(await readOperation(stroke));
+    const operation = await readOperation(stroke);
+    this.current.restrictTo(null); // the other tab may know of newer parts
+    const change = this.current.apply(operation);
+    this.current.restrictTo(this.partIds);
     this.model.recolour(change.faces);
     this.version.set(this.version.get() + 1);
   }
