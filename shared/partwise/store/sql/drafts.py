@@ -56,7 +56,8 @@ def _refuse_foreign_base(connection: Connection, shape_id: int, new: NewDraft) -
     if new.base_revision is None:
         return
     query = select(revision.shape_id, revision.mesh_hash, revision.sha256).where(revision.id == new.base_revision)
-    base = connection.execute(query).first()
+    # nobody starts from reference labels: whoever guessed their number would see them
+    base = connection.execute(query.where(revision.kind.in_([kind.value for kind in SHOWN_KINDS]))).first()
     if base is None or tuple(base) != (shape_id, new.mesh_hash, new.base_sha256):
         raise LabelError(
             f"a draft must start from labels of its shape on its mesh but revision {new.base_revision} is not that, "

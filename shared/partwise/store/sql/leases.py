@@ -90,6 +90,8 @@ def renew(
     connection: Connection, lease_id: int, person_id: int, lease_s: float, is_prefetched: bool | None, now: datetime
 ) -> Lease:
     check_lease_time(lease_s)
+    if is_prefetched is False:  # before the lease, as in claims: two at once must not both find room for one more
+        person_name(connection, person_id, for_update=True)
     known = own_active(connection, lease_id, person_id)
     if known.is_prefetched and is_prefetched is False:
         refuse_another(connection, person_id)

@@ -151,16 +151,21 @@ def claim_shape(connection: Connection, shape_id: int, person_id: int, lease_s: 
 
 
 def take_by_name(connection: Connection, shape_id: int, person_id: int, lease_s: float, now: datetime) -> Lease:
-    """The lease of a free place of a shape, or of a shape that wants no more labels."""
+    """The lease of a free place of a shape that this person may have, or of a shape that wants no more labels."""
     facet = connection.execute(select(t.shape_facet).where(t.shape_facet.c.shape_id == shape_id)).one()
     if facet.state in (ShapeState.NEW, ShapeState.FAILED):
         raise ConflictError(f"shape {shape_id} has no surface to label yet; it is {facet.state}: preprocess it first")
     _refuse_second_answer(connection, shape_id, person_id)
     place = t.queue_rank
-    free = select(place).where(place.c.shape_id == shape_id, place.c.lease_id.is_(None))
+    is_for_them = or_(place.c.person_id.is_(None), place.c.person_id == person_id)
+    free = select(place).where(place.c.shape_id == shape_id, place.c.lease_id.is_(None), is_for_them)
     found = connection.execute(free.order_by(place.c.slot).limit(1).with_for_update()).first()
+    others = select(place.c.lease_id).where(place.c.shape_id == shape_id).limit(1)
     if found is not None:
         taken = _take(connection, found, person_id, lease_s, now)
+    elif (waits := connection.execute(others).first()) is not None:  # what it wants are labels of those people
+        whose = "kept for" if waits.lease_id is None else "with"
+        raise ConflictError(f"shape {shape_id} is {whose} someone else now; take another, or ask an operator")
     else:
         values = {
             **told_of(connection, facet.collection_id, shape_id, None),

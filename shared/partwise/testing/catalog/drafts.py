@@ -152,6 +152,14 @@ class DraftConformance:
         assert catalog.open_draft(lease.id, lease.person_id, new).base_revision == own.id
         assert collection.id == catalog.shape(shape_id).collection_id
 
+    def test_a_draft_does_not_start_from_reference_labels(self, catalog: Catalog) -> None:
+        _, lease = _leased(catalog)
+        secret = label(catalog, lease.shape_id, RevisionKind.REFERENCE)
+        with raises(LabelError, "is not that"):
+            catalog.open_draft(
+                lease.id, lease.person_id, NewDraft(mesh_hash(lease.shape_id), secret.id, secret.sha256, 1)
+            )
+
     def test_a_discarded_draft_keeps_its_strokes_and_takes_no_more(self, catalog: Catalog) -> None:
         _, lease = _leased(catalog)
         draft = blank_draft(catalog, lease)

@@ -228,6 +228,24 @@ class QueueConformance:
         assert catalog.assign_shapes([first], None, bob.id) == 1
         assert claim(catalog, collection, bob).shape_id == first
 
+    def test_what_is_kept_for_one_is_no_others_by_name_either(self, catalog: Catalog) -> None:
+        _, (shape_id,) = ready_shapes(catalog, 1)
+        ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
+        catalog.assign_shapes([shape_id], ann.id, bob.id)
+        with raises(ConflictError, "kept for someone else"):
+            catalog.claim_shape(shape_id, bob.id, 60)
+        assert catalog.claim_shape(shape_id, ann.id, 60).shape_id == shape_id
+
+    def test_a_round_is_not_passed_by_when_all_its_labels_are_in_work(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        catalog.update_collection_settings(collection.id, {"labels_per_shape": 2})
+        catalog.fill_queue(collection.id)
+        ann, bob, cleo = (catalog.add_person(name) for name in ("ann", "bob", "cleo"))
+        confirm(catalog, claim(catalog, collection, ann))
+        claim(catalog, collection, bob)
+        with raises(ConflictError, "with someone else"):
+            catalog.claim_shape(shape_id, cleo.id, 60)
+
     def test_ranks_say_who_is_next_and_disturb_nobody(self, catalog: Catalog) -> None:
         collection, (first, second, third) = ready_shapes(catalog, 3)
         ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
