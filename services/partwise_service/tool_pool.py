@@ -32,13 +32,15 @@ Answering = Callable[[Connection, str, int], None]
 class PoolLimits:
     """n_processes : tools that run at once. max_queued : calls that may wait. timeout_s : of a call that runs.
 
-    max_shapes : shapes that a process keeps prepared.
+    max_shapes : shapes that a process keeps prepared. abandoned_s : how much longer a call runs when its client has
+    gone: mostly it was about to prepare a shape for the next call, which is worth having.
     """
 
     n_processes: int
     max_queued: int
     max_shapes: int
     timeout_s: float
+    abandoned_s: float = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +135,12 @@ class ToolProcess:
         if connection is not None:
             connection.close()
 
+    def give_up(self) -> None:
+        """Ends the process under the thread that waits for it, which then raises as for any that is lost."""
+        process = self._process
+        if process is not None:
+            process.kill()
+
     def _started(self) -> Connection:
         if self._connection is not None and self._process.is_alive():
             return self._connection
@@ -171,14 +179,18 @@ class ToolPool:
         return len(self._idle)
 
     async def run(self, call: ToolCall) -> np.ndarray:
-        """The tool's result. Cancelled, a call that waits is dropped, and the result of one that runs thrown away.
+        """The tool's result. Cancelled, a call that waits is dropped, and one that runs ends soon, in vain.
 
         Raises what the tool refuses; problems: 503 with Retry-After if too many wait, and as `ToolProcess.run`.
         """
         process = self._taken(call.mesh.mesh_hash) if self._idle else await self._next_free()
         running = asyncio.get_running_loop().run_in_executor(self._threads, process.run, call)
         running.add_done_callback(lambda done: self._finished(process, done))
-        return await asyncio.shield(running)
+        try:
+            return await asyncio.shield(running)
+        except asyncio.CancelledError:
+            asyncio.get_running_loop().call_later(self._limits.abandoned_s, _give_up_unless_done, process, running)
+            raise
 
     def close(self) -> None:
         """Ends all processes; calls that run or wait fail."""
@@ -219,6 +231,11 @@ class ToolPool:
                 place.set_result(process)
                 return
         self._idle.append(process)
+
+
+def _give_up_unless_done(process: ToolProcess, running: "asyncio.Future[np.ndarray]") -> None:
+    if not running.done():
+        process.give_up()
 
 
 def _unavailable(detail: str) -> ProblemError:

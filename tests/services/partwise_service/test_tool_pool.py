@@ -108,6 +108,19 @@ def test_a_running_calls_result_is_thrown_away_and_its_process_used_again(tools)
     asyncio.run(calls())
 
 
+def test_a_running_call_that_nobody_waits_for_is_ended_when_it_goes_on() -> None:
+    async def calls(tools: ToolPool) -> None:
+        pid = (await tools.run(call(1)))[0]
+        running = asyncio.ensure_future(tools.run(call(HANG)))
+        await asyncio.sleep(0)
+        running.cancel()
+        told = await tools.run(call(2))  # waits for the only process
+        assert (told[0] != pid, told[1]) == (True, 2)
+
+    with closing(ToolPool("memory", PoolLimits(1, 1, 2, 60.0, abandoned_s=0.01), answer_as_told)) as tools:
+        asyncio.run(calls(tools))
+
+
 def test_a_call_that_is_cancelled_as_its_turn_comes_gives_the_process_back(tools) -> None:
     async def calls() -> None:
         running = asyncio.ensure_future(tools.run(call(1)))

@@ -4,6 +4,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import httpx
@@ -12,6 +13,7 @@ import uvicorn
 
 from partwise.store.records import NewToken, Role
 from partwise_service.settings import ServiceSettings
+from partwise_service.tool_pool import answer_calls
 
 START_S = 60.0
 
@@ -45,8 +47,7 @@ def _wait(is_so) -> None:
 def test_a_client_that_hangs_up_takes_its_call_out_of_the_line(served, app, mugs) -> None:
     service = app.state.service
     catalog, tools = service.workspace.catalog, service.tools
-    new = NewToken(catalog.add_person("ann").id, Role.ANNOTATOR, datetime.now(UTC) + timedelta(days=1))
-    headers = {"Authorization": f"Bearer {catalog.issue_token(new, 'test').secret}", "Accept": "application/json"}
+    headers = _headers(catalog)
     path, body = f"/shapes/{mugs.ids['b.off']}/patches", {"n_patches": 5, "method": "k_means"}
     process = tools._idle.popleft()  # busy with something that takes long
     with httpx.Client(base_url=served, headers=headers, timeout=START_S) as client:
@@ -59,6 +60,32 @@ def test_a_client_that_hangs_up_takes_its_call_out_of_the_line(served, app, mugs
         answer = client.post(path, json=body)
     assert (answer.status_code, answer.json()["n_faces"]) == (200, mugs.meshes["b.off"].n_faces)
     assert tools.n_idle == 1
+
+
+def test_a_client_that_hangs_up_ends_its_call_that_runs(served, app, mugs) -> None:
+    service = app.state.service
+    catalog, tools = service.workspace.catalog, service.tools
+    tools._limits = replace(tools._limits, abandoned_s=0.01)
+    process = tools._processes[0]
+    process._answering = never_answer
+    headers = _headers(catalog)
+    path, body = f"/shapes/{mugs.ids['b.off']}/patches", {"n_patches": 5, "method": "k_means"}
+    _given_up(served, headers, path, body)
+    _wait(lambda: tools.n_idle == 1)
+    process._answering = answer_calls
+    with httpx.Client(base_url=served, headers=headers, timeout=START_S) as client:
+        assert client.post(path, json=body).status_code == 200
+
+
+def never_answer(connection, _array_url: str, _max_prepared: int) -> None:
+    """The life of a tool's process that is at its call for ever."""
+    connection.recv()
+    threading.Event().wait()
+
+
+def _headers(catalog) -> dict[str, str]:
+    new = NewToken(catalog.add_person("ann").id, Role.ANNOTATOR, datetime.now(UTC) + timedelta(days=1))
+    return {"Authorization": f"Bearer {catalog.issue_token(new, 'test').secret}", "Accept": "application/json"}
 
 
 def _given_up(url: str, headers: dict, path: str, body: dict) -> None:
