@@ -71,7 +71,7 @@ function Withdrawn(props: { open: OpenShape; title: string; why: string; leave: 
         </>
       }
     >
-      {props.why}
+      {sentence(props.why)}
     </Notice>
   );
 }

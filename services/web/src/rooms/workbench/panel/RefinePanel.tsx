@@ -1,11 +1,18 @@
 import { ChevronDown } from "lucide-react";
-import { Button, Menu, MenuItem, Slider } from "../../../components";
+import { Button, Menu, MenuChoice, MenuHeading, MenuItem, MenuLine, Slider } from "../../../components";
 import { useObservable, useObservableOr } from "../../../drafts/useObservable";
 import type { OpenShape } from "../shape/openShape";
 import { useCanEdit } from "../shape/useCanEdit";
-import type { ToolShelf } from "../tools/toolSettings";
+import type { StartChoice, ToolShelf } from "../tools/toolSettings";
 import type { Refinement } from "../tools/useRefinement";
 import styles from "./RefinePanel.module.css";
+
+const STARTS: readonly (readonly [StartChoice, string])[] = [
+  ["best", "The best there is"],
+  ["refined", "Refined labels"],
+  ["predicted", "Predicted labels"],
+  ["nothing", "Nothing"],
+];
 
 export interface RefinePanelProps {
   open: OpenShape | null;
@@ -59,6 +66,7 @@ export function RefinePanel({ open, shelf, refinement, hasConfirmed }: RefinePan
 
 function StartMenu({ open, shelf, refinement, hasConfirmed }: RefinePanelProps) {
   const canEdit = useCanEdit(open);
+  const { start } = useObservable(shelf.settings);
   const hasOpened = open?.opened.some((label) => label !== 0) ?? false;
   const cutAnew = () => {
     open?.perform({ kind: "clear" });
@@ -85,6 +93,17 @@ function StartMenu({ open, shelf, refinement, hasConfirmed }: RefinePanelProps) 
       <MenuItem isDisabled={!hasOpened} onSelect={() => refinement.startAsOpened()}>
         Last draft, as it was opened
       </MenuItem>
+      <MenuLine />
+      <MenuHeading>New shapes start from</MenuHeading>
+      {STARTS.map(([choice, words]) => (
+        <MenuChoice
+          key={choice}
+          isChecked={start === choice}
+          onSelect={() => shelf.change({ start: choice })}
+        >
+          {words}
+        </MenuChoice>
+      ))}
     </Menu>
   );
 }
