@@ -1,4 +1,4 @@
-"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox, load."""
+"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox, service-tools, load."""
 
 import tempfile
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from partwise_cli.arguments import JsonOption
+from partwise_cli.arguments import CollectionOption, JsonOption, WorkspaceArgument
 from partwise_cli.run_view import run_progress
 from partwise_cli.terminal import counted, print_json, print_table, progress, shape_progress, warning_lines
 
@@ -298,6 +298,31 @@ def toolbox(
                 print_measured(each)
     if as_json:
         print_json(toolbox_json(request, measured))
+
+
+@app.command()
+def service_tools(
+    ws: WorkspaceArgument,
+    collection: CollectionOption = None,
+    shapes: Annotated[int, typer.Option(help="Shapes to ask for, after two that start it all.", min=1)] = 8,
+    as_json: JsonOption = False,
+) -> None:
+    """How long tools take over HTTP.  [dim]partwise bench service-tools ws --shapes 8[/dim]"""
+    from partwise.workspace.shapes import find_collection
+    from partwise.workspace.workspace import open_workspace
+    from partwise_cli.bench.service_tools import medians, time_service_tools
+
+    with open_workspace(ws) as workspace, progress("tools") as advance:
+        timings = time_service_tools(workspace, find_collection(workspace, collection), shapes, advance)
+    if as_json:
+        for timing in timings:
+            print_json(asdict(timing))
+        return
+    rows = [
+        (each.source_key, each.tool, f"{each.n_faces:,}", *(f"{ms:.0f}" for ms in each.milliseconds))
+        for each in [*timings, *medians(timings)]
+    ]
+    print_table("Milliseconds", ("shape", "tool", "faces", "first", "again", "other setting"), rows, (2, 3, 4, 5))
 
 
 @app.command()

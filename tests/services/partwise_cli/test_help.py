@@ -42,7 +42,7 @@ def test_the_commands_are_these() -> None:
         "segment", "segment patches", "segment refine", "segment replay",
         "train", "evaluate", "refine", "select", "queue", "serve", "up", "work", "token", "token create", "token list",
         "token revoke", "reviews", "reviews list", "reviews accept", "simulate", "demo", "doctor", "version", "bench",
-        "bench describe",
+        "bench describe", "bench service-tools",
         "bench loo", "bench remeshing", "bench calibration", "bench scheduling", "bench throughput", "bench toolbox",
         "bench load",
     }  # fmt: skip
