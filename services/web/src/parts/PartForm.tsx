@@ -24,7 +24,9 @@ export function PartForm({ collectionId, parts, part, onClose }: PartFormProps) 
   const others = parts.filter((each) => each.id !== part?.id);
   const error = nameError(draft, others);
   const form = useRef<HTMLFormElement>(null);
-  useEffect(() => form.current?.scrollIntoView({ block: "nearest" }), []);
+  useEffect(() => {
+    form.current?.scrollIntoView({ block: "nearest" }); // returns a promise in newer browsers
+  }, []);
   const submit = (event: FormEvent) => {
     event.preventDefault();
     setTried(true);
