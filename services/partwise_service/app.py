@@ -85,7 +85,7 @@ _REQUEST_HEADERS = ("Authorization", "Content-Type", "If-None-Match", "Last-Even
 def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.monotonic) -> FastAPI:
     """The application. It opens the workspace when it starts and closes it when it ends.
 
-    clock : seconds, monotone, for limits on failed logins.
+    clock : seconds, monotone, for limits on failed logins and for how long a secret is trusted.
     """
 
     @asynccontextmanager
@@ -99,7 +99,8 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
             hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h))
             await resources.enter_async_context(hub.running())
             ops = Remembered[OpsOut](OPS_S, clock)
-            app.state.service = Service(settings, workspace, limiter, RecentlyGood(), EmbeddingMaps(), pool, ops, hub)
+            recent = RecentlyGood(clock)
+            app.state.service = Service(settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, clock)
             yield
 
     app = FastAPI(

@@ -8,6 +8,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from typing import Annotated
 
 from fastapi import Depends, Request, Security
+from fastapi.concurrency import run_in_threadpool
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
 from partwise.errors import NotFoundError
@@ -16,7 +17,7 @@ from partwise.store.records import Collection, Role, Shape
 from partwise.workspace.workspace import Workspace
 from partwise_service.problems import ProblemError, ProblemKind
 from partwise_service.schemas.base import RowId
-from partwise_service.security.authentication import SESSION_COOKIE, Credential, authenticate
+from partwise_service.security.authentication import SESSION_COOKIE, Credential, authenticate, recognise
 from partwise_service.security.identity import Identity
 from partwise_service.service import Service
 
@@ -52,7 +53,7 @@ async def catalog(served: WorkspaceDep) -> Catalog:
 CatalogDep = Annotated[Catalog, Depends(catalog)]
 
 
-def current_identity(
+async def current_identity(
     request: Request,
     open_service: ServiceDep,
     bearer: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)],
@@ -61,7 +62,7 @@ def current_identity(
     """Who calls, by token or by session. Problems: 401, 403 for a session from a foreign page, 429."""
     address = client_address(request)
     if bearer is not None:
-        return authenticate(open_service, Credential(bearer.credentials, is_session=False), address)
+        return await _identity(open_service, Credential(bearer.credentials, is_session=False), address)
     if cookie is None:
         raise ProblemError(
             ProblemKind.UNAUTHENTICATED,
@@ -69,7 +70,12 @@ def current_identity(
             headers={"WWW-Authenticate": "Bearer"},
         )
     refuse_foreign_origin(request, open_service)
-    return authenticate(open_service, Credential(cookie, is_session=True), address)
+    return await _identity(open_service, Credential(cookie, is_session=True), address)
+
+
+async def _identity(open_service: Service, credential: Credential, address: str) -> Identity:
+    known = recognise(open_service, credential)
+    return known or await run_in_threadpool(authenticate, open_service, credential, address)
 
 
 Caller = Annotated[Identity, Depends(current_identity)]

@@ -1,5 +1,6 @@
 """`Service`: what is open while the application runs, for handlers to reach through `dependencies`."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from partwise.workspace.workspace import Workspace
@@ -15,7 +16,10 @@ from partwise_service.tool_pool import ToolPool
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Service:
-    """limiter : of failures to log in, by address and by a secret's beginning. recent : secrets good lately."""
+    """limiter : of failures to log in, by address and by a secret's beginning. recent : secrets good lately.
+
+    clock : seconds, monotone.
+    """
 
     settings: ServiceSettings
     workspace: Workspace
@@ -25,3 +29,4 @@ class Service:
     tools: ToolPool
     ops: Remembered[OpsOut]
     events: EventHub
+    clock: Callable[[], float]

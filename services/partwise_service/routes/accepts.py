@@ -10,6 +10,7 @@ from partwise.store.records import Collection, Shape, ShapeState
 from partwise.workspace.accepting import accept_in_bulk, settle_rechecks
 from partwise.workspace.embedding_map import embedding_key, spread_out
 from partwise.workspace.segmentations import Segmentation
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ServiceDep, WorkspaceDep, shapes_of
 from partwise_service.schemas.accepts import (
     Accept,
@@ -22,7 +23,7 @@ from partwise_service.schemas.accepts import (
 from partwise_service.schemas.base import MAX_ROW_ID, Page
 
 MAX_PAGE = 500
-router = APIRouter(prefix="/collections/{collection_id}", tags=["accepts"])
+router = APIRouter(prefix="/collections/{collection_id}", route_class=AnswerRoute, tags=["accepts"])
 
 
 @router.post("/accept")

@@ -12,6 +12,7 @@ from partwise.store.meshes import mesh_arrays
 from partwise.workspace.choices import Segmentation
 from partwise.workspace.pictures import find_picture
 from partwise.workspace.shapes import load_mesh
+from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import (
     IMMUTABLE,
     PNG_RESPONSES,
@@ -25,7 +26,7 @@ from partwise_service.dependencies import Caller, CatalogDep, ScopedShape, Works
 from partwise_service.schemas.base import MAX_ROW_ID, Hash
 from partwise_service.shown_labels import ShownLabels, labels_of_revision, shown_labels
 
-router = APIRouter(tags=["arrays"])
+router = APIRouter(route_class=AnswerRoute, tags=["arrays"])
 ShapeQuery = Annotated[int, Query(ge=1, le=MAX_ROW_ID, description="A shape that has or had the mesh.")]
 
 

@@ -10,6 +10,7 @@ from partwise.store.catalog import Catalog
 from partwise.store.records import Answer, Consensus, Role
 from partwise.store.reviews import Review, ReviewReason
 from partwise.workspace.confirming import choose_answer
+from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
@@ -25,7 +26,7 @@ from partwise_service.schemas.shapes import RevisionOut
 
 MAX_PAGE = 500
 MAX_DISAGREEMENTS = 100
-router = APIRouter(tags=["checks"])
+router = APIRouter(route_class=AnswerRoute, tags=["checks"])
 After = Annotated[int, Query(ge=0, le=MAX_ROW_ID, description="`next` of the page before.")]
 
 

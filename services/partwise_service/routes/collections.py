@@ -3,6 +3,7 @@
 from fastapi import APIRouter
 
 from partwise.workspace.settings import change_settings
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import (
     Caller,
     CatalogDep,
@@ -14,7 +15,7 @@ from partwise_service.dependencies import (
 from partwise_service.schemas.base import refuse_unprintable
 from partwise_service.schemas.collections import CollectionOut, CollectionsOut, NewCollection, SettingsChange
 
-router = APIRouter(prefix="/collections", tags=["collections"])
+router = APIRouter(prefix="/collections", route_class=AnswerRoute, tags=["collections"])
 
 
 @router.get("")

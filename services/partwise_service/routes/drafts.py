@@ -12,6 +12,7 @@ from partwise.store.catalog import Catalog
 from partwise.store.records import Draft
 from partwise.workspace.confirming import begin_draft, confirm, draft_work
 from partwise.workspace.labelling import keep_mesh
+from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
 from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, WorkspaceDep
 from partwise_service.held_leases import visible_lease
@@ -35,7 +36,7 @@ from partwise_service.security.identity import Identity
 MAX_PAGE = 5_000
 _TAIL = 1_000
 """Strokes of the server's side in a refusal; a client that is further behind pages through the log."""
-router = APIRouter(tags=["drafts"])
+router = APIRouter(route_class=AnswerRoute, tags=["drafts"])
 IfMatch = Annotated[
     str, Header(pattern=r'^(W/)?"[0-9]{1,9}"$', description="The draft's ETag: how many strokes the caller knows of.")
 ]

@@ -11,6 +11,7 @@ from fastapi.responses import StreamingResponse
 
 from partwise.store.catalog import Catalog
 from partwise.store.records import EventKind
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ServiceDep
 from partwise_service.event_hub import POLL_S, Listener
 from partwise_service.event_stream import event_stream
@@ -19,7 +20,7 @@ from partwise_service.security.identity import Identity
 CHECK_S = 30.0
 MAX_EVENT_ID = 2**53
 _ID_DIGITS = 15
-router = APIRouter(tags=["events"])
+router = APIRouter(route_class=AnswerRoute, tags=["events"])
 EVENT_STREAM = "text/event-stream"
 _EVENT = {
     "type": "object",

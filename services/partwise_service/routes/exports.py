@@ -10,6 +10,7 @@ from partwise.errors import ConflictError, NotFoundError
 from partwise.store.large_objects import read_chunks
 from partwise.store.records import Collection, Job, JobKind, JobState
 from partwise.workspace.export_archive import find_export
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Operator, WorkspaceDep, visible_collection
 from partwise_service.routes.jobs import ScopedJob
 
@@ -21,7 +22,7 @@ _RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 _UNUSUAL = re.compile(r"[^A-Za-z0-9_-]+")
 _MAX_STEM = 60
-router = APIRouter(tags=["jobs"])
+router = APIRouter(route_class=AnswerRoute, tags=["jobs"])
 
 
 @router.get("/jobs/{job_id}/download", responses=_RESPONSES, response_class=StreamingResponse)

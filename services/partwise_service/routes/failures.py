@@ -6,6 +6,7 @@ from fastapi import APIRouter, Query
 
 from partwise.store.records import FailureKind, JobKind
 from partwise.workspace.segmentations import EVALUATE, REFINE
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Operator, ScopedCollection
 from partwise_service.schemas.base import MAX_ROW_ID, Page
 from partwise_service.schemas.failures import FailureOut, Retried, Retry
@@ -14,7 +15,7 @@ from partwise_service.schemas.jobs import JobOut
 MAX_PAGE = 500
 JOB_OF_STAGE = {EVALUATE: JobKind.EVALUATE, REFINE: JobKind.REFINE}
 """Which job runs a stage; all others are of preprocessing, which is followed by what depends on it."""
-router = APIRouter(prefix="/collections/{collection_id}/failures", tags=["failures"])
+router = APIRouter(prefix="/collections/{collection_id}/failures", route_class=AnswerRoute, tags=["failures"])
 
 
 @router.get("")

@@ -6,12 +6,13 @@ import numpy as np
 from fastapi import APIRouter, Query
 
 from partwise.workspace.embedding_map import embedding_key
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, ScopedCollection, ServiceDep
 from partwise_service.schemas.base import MAX_ROW_ID
 from partwise_service.schemas.figures import EmbeddingPage, ModelOut, ModelsOut
 
 MAX_POINTS = 20_000
-router = APIRouter(prefix="/collections/{collection_id}", tags=["figures"])
+router = APIRouter(prefix="/collections/{collection_id}", route_class=AnswerRoute, tags=["figures"])
 
 
 @router.get("/models")

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Body, Depends, Query
 
 from partwise.errors import NotFoundError
 from partwise.store.records import Job, JobKind, JobState, Role
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, require_role
 from partwise_service.schemas.base import MAX_ROW_ID, RowId
 from partwise_service.schemas.exports import NewExport
@@ -13,7 +14,7 @@ from partwise_service.schemas.jobs import JobOut, JobsPage, NewJob
 from partwise_service.security.identity import Identity
 
 MAX_PAGE = 500
-router = APIRouter(tags=["jobs"])
+router = APIRouter(route_class=AnswerRoute, tags=["jobs"])
 
 Before = Annotated[int | None, Query(ge=1, le=MAX_ROW_ID, description="`next` of the page before.")]
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE, description="Jobs of a page, at most.")]

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Query
 
 from partwise.errors import ConflictError
 from partwise.workspace.confirming import confirm
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import (
     Annotator,
     CatalogDep,
@@ -20,7 +21,7 @@ from partwise_service.schemas.drafts import Confirm, Confirmed
 from partwise_service.schemas.queue import LeaseOut, LeasesOut, Renewal, Skip
 
 MAX_PAGE = 500
-router = APIRouter(tags=["leases"])
+router = APIRouter(route_class=AnswerRoute, tags=["leases"])
 
 
 @router.get("/leases")

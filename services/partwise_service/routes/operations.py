@@ -12,6 +12,7 @@ from partwise.store.records import Job, JobState
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE, REFINE
 from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import Workspace
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Operator, ScopedCollection, ServiceDep, visible_collection
 from partwise_service.schemas.base import MAX_ROW_ID
 from partwise_service.schemas.operations import (
@@ -32,7 +33,7 @@ from partwise_service.schemas.operations import (
 MAX_REVIEWS = 1_000
 MAX_WORKERS = 100
 WINDOW = timedelta(minutes=15)
-router = APIRouter(tags=["operations"])
+router = APIRouter(route_class=AnswerRoute, tags=["operations"])
 
 
 @router.get("/collections/{collection_id}/ops")

@@ -4,11 +4,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection
 from partwise_service.schemas.base import MAX_ROW_ID, RowId
 from partwise_service.schemas.collections import NewPart, PartChange, PartsOut
 
-router = APIRouter(prefix="/collections/{collection_id}/parts", tags=["parts"])
+router = APIRouter(prefix="/collections/{collection_id}/parts", route_class=AnswerRoute, tags=["parts"])
 
 
 @router.get("")

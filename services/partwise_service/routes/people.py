@@ -6,7 +6,17 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from partwise.store.records import NewToken, Role
-from partwise_service.dependencies import Admin, Caller, CatalogDep, Operator, Reviewer, require_all_scope, require_role
+from partwise_service.answering import AnswerRoute
+from partwise_service.dependencies import (
+    Admin,
+    Caller,
+    CatalogDep,
+    Operator,
+    Reviewer,
+    ServiceDep,
+    require_all_scope,
+    require_role,
+)
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId, refuse_unprintable
 from partwise_service.schemas.people import (
     AuditOut,
@@ -19,7 +29,7 @@ from partwise_service.schemas.people import (
 )
 
 MAX_PAGE = 500
-router = APIRouter(tags=["people"])
+router = APIRouter(route_class=AnswerRoute, tags=["people"])
 AfterId = Annotated[int, Query(ge=0, le=MAX_ROW_ID, description="`next` of the page before.")]
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE)]
 
@@ -60,12 +70,14 @@ def issue_token(caller: Admin, catalog: CatalogDep, new: NewTokenIn) -> IssuedTo
 
 
 @router.delete("/tokens/{token_id}")
-def revoke_token(caller: Caller, catalog: CatalogDep, token_id: RowId) -> TokenOut:
+def revoke_token(caller: Caller, service: ServiceDep, token_id: RowId) -> TokenOut:
     """End a token, with the sessions that came from it. One's own, or anybody's as an admin."""
     if caller.token.id != token_id:
         require_role(caller, Role.ADMIN)
         require_all_scope(caller)
-    return TokenOut.of(catalog.revoke_token(token_id, caller.name))
+    revoked = service.workspace.catalog.revoke_token(token_id, caller.name)
+    service.recent.distrust_all()
+    return TokenOut.of(revoked)
 
 
 @router.get("/audit")

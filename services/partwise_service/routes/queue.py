@@ -5,6 +5,7 @@ from numpy.random import default_rng
 
 from partwise.errors import ConflictError, NotFoundError
 from partwise.store.records import Lease, NewClaim
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import (
     Annotator,
     CatalogDep,
@@ -27,7 +28,7 @@ from partwise_service.schemas.queue import (
     Reopening,
 )
 
-router = APIRouter(tags=["queue"])
+router = APIRouter(route_class=AnswerRoute, tags=["queue"])
 
 
 @router.post("/queue/claim")

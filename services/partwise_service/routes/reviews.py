@@ -7,13 +7,14 @@ from fastapi import APIRouter, Query
 from partwise.errors import ConflictError, NotFoundError
 from partwise.store.catalog import LabelCatalog
 from partwise.store.reviews import NewReview, Review, ReviewReason
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape, shapes_of
 from partwise_service.schemas.accepts import BulkRejection, RefusedOut, Rejected
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.shapes import Rejection, ReviewOut, ReviewsOut
 
 MAX_PAGE = 500
-router = APIRouter(tags=["reviews"])
+router = APIRouter(route_class=AnswerRoute, tags=["reviews"])
 
 
 @router.get("/collections/{collection_id}/reviews")

@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 from fastapi import APIRouter, Request, Response
 
 from partwise.store.records import IssuedToken
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ServiceDep, client_address, refuse_foreign_page
 from partwise_service.schemas.session import Login, Me, TokenLogin
 from partwise_service.security.authentication import (
@@ -19,7 +20,7 @@ from partwise_service.security.identity import Identity
 from partwise_service.service import Service
 
 HOUR_S = 3600.0
-router = APIRouter(tags=["session"])
+router = APIRouter(route_class=AnswerRoute, tags=["session"])
 
 
 @router.post("/login")
@@ -37,6 +38,7 @@ def log_out(response: Response, caller: Caller, open_service: ServiceDep, catalo
     """End the session. A token that was sent as such stays good."""
     if caller.token.is_session:
         catalog.revoke_token(caller.token.id, caller.name)
+        open_service.recent.distrust_all()
     _set_cookie(response, open_service, "", 0)
 
 

@@ -10,6 +10,7 @@ from pydantic import Field
 from partwise.store.catalog import SHOWN_KINDS, Catalog
 from partwise.store.records import ANY_STAGE, BY_NAME, ListedShape, Role, ShapeFilter, ShapeOrder, ShapeState
 from partwise.workspace.provenance import FailureCard, ProvenanceCard, provenance
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep, shapes_of
 from partwise_service.schemas.base import MAX_ROW_ID, Page
 from partwise_service.schemas.paging import anchor_of, cursor_of
@@ -31,7 +32,7 @@ NO_ORDER = "none"
 LIVE_UP_TO = 20_000
 """Shapes up to which a jump is into the present order; past them into one made beforehand, where there is one."""
 LABELS = {"entropy": "Entropy", "entropy_by_area": "Entropy by area", "bald": "BALD"}
-router = APIRouter(tags=["shapes"])
+router = APIRouter(route_class=AnswerRoute, tags=["shapes"])
 
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE, description="Rows of a page, at most.")]
 After = Annotated[str | None, Query(max_length=80, description="`next` of the page before.")]

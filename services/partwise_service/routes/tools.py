@@ -19,6 +19,7 @@ from partwise.workspace.confirming import DraftWork, draft_work
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE
 from partwise.workspace.shapes import shape_mesh
 from partwise.workspace.workspace import Workspace
+from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import SAFETENSORS, entity_tag, safetensors_response
 from partwise_service.dependencies import Annotator, ScopedShape, ServiceDep, WorkspaceDep
 from partwise_service.problems import ProblemError, ProblemKind
@@ -43,7 +44,7 @@ from partwise_service.tool_calls import (
 )
 from partwise_service.tool_pool import ToolPool
 
-router = APIRouter(tags=["tools"])
+router = APIRouter(route_class=AnswerRoute, tags=["tools"])
 TOOL_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
         "model": LabelRuns,

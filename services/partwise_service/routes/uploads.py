@@ -17,6 +17,7 @@ from partwise.store.large_objects import CHUNK_BYTES, EXPIRING_NAME
 from partwise.store.records import JobKind
 from partwise.workspace.ingest_prefixes import plain_relative
 from partwise.workspace.uploads import UploadWriter, begin_upload, delete_upload, find_upload, uploads
+from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import (
     CatalogDep,
     Operator,
@@ -33,7 +34,7 @@ from partwise_service.schemas.uploads import IngestRequest, PrefixesOut, UploadO
 IDLE_S = 60.0
 """Seconds of silence after which an upload is given up."""
 MAX_NAME = 255
-router = APIRouter(tags=["ingest"])
+router = APIRouter(route_class=AnswerRoute, tags=["ingest"])
 UploadName = Annotated[
     str, Query(min_length=1, max_length=MAX_NAME, description="The file's own name, such as scans.zip."), NO_NUL
 ]

@@ -28,6 +28,12 @@ class Credential:
     is_session: bool
 
 
+def recognise(service: Service, credential: Credential) -> Identity | None:
+    """Who the secret belongs to, if it was good a moment ago; None says that `authenticate` must look it up."""
+    token = service.recent.trusted(_fingerprint(credential.secret))
+    return None if token is None or token.is_session is not credential.is_session else Identity(token)
+
+
 def authenticate(service: Service, credential: Credential, address: str) -> Identity:
     """Who the secret belongs to.
 
@@ -37,13 +43,13 @@ def authenticate(service: Service, credential: Credential, address: str) -> Iden
     known = _fingerprint(credential.secret)
     if not service.recent.holds(known):
         refuse_too_many(service, address, credential.secret)
-    catalog = service.workspace.catalog
+    catalog, asked_at = service.workspace.catalog, service.clock()
     token = None if len(credential.secret) > MAX_SECRET else catalog.authenticate(credential.secret)
     if token is None or token.is_session is not credential.is_session:
         service.recent.forget(known)
         record_failure(service, address, credential.secret)
         raise refused()
-    service.recent.remember(known)
+    service.recent.remember(known, token, asked_at)
     if token.last_used_at is None or datetime.now(UTC) - token.last_used_at >= _USE_NOTED_EVERY:
         catalog.note_token_use(token.id)
     return Identity(token)

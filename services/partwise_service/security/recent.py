@@ -1,31 +1,54 @@
-"""`RecentlyGood`: fingerprints of secrets that were good lately. In memory, bounded."""
+"""`RecentlyGood`: secrets that were good lately, by fingerprint. In memory, bounded."""
 
+import math
 from collections import OrderedDict
+from collections.abc import Callable
+from datetime import UTC, datetime
 from threading import Lock
+
+from partwise.store.records import Token
+
+TRUST_S = 5.0
+"""Seconds for which a secret that was good is not looked up again, unless something is revoked here meanwhile."""
 
 
 class RecentlyGood:
-    """Says which secrets need not wait for a limit that others have used up; each is still looked up every time.
+    """Says which secrets need not wait for a limit that others have used up, and whose those are that were so just now.
 
-    Holds hashes only, the `max_secrets` used last. Threads may share it.
+    Holds hashes only, the `max_secrets` used last. Threads may share it. clock : seconds, monotone.
     """
 
-    def __init__(self, max_secrets: int = 10_000) -> None:
-        self._fingerprints: OrderedDict[bytes, None] = OrderedDict()
+    def __init__(self, clock: Callable[[], float], max_secrets: int = 10_000) -> None:
+        self._clock = clock
         self._max_secrets = max_secrets
+        self._tokens: OrderedDict[bytes, tuple[Token, float]] = OrderedDict()
+        self._distrusted_at = -math.inf
         self._lock = Lock()
 
     def holds(self, fingerprint: bytes) -> bool:
         with self._lock:
-            return fingerprint in self._fingerprints
+            return fingerprint in self._tokens
 
-    def remember(self, fingerprint: bytes) -> None:
+    def trusted(self, fingerprint: bytes) -> Token | None:
+        """The token of a secret that was looked up less than `TRUST_S` ago and has not expired."""
         with self._lock:
-            self._fingerprints[fingerprint] = None
-            self._fingerprints.move_to_end(fingerprint)
-            while len(self._fingerprints) > self._max_secrets:
-                self._fingerprints.popitem(last=False)
+            token, looked_up_at = self._tokens.get(fingerprint, (None, 0.0))
+            is_fresh = looked_up_at > self._distrusted_at and self._clock() - looked_up_at < TRUST_S
+        return token if token is not None and is_fresh and datetime.now(UTC) < token.expires_at else None
+
+    def remember(self, fingerprint: bytes, token: Token, looked_up_at: float) -> None:
+        """looked_up_at : by the clock, before it was: what is revoked in between is not trusted."""
+        with self._lock:
+            self._tokens[fingerprint] = (token, looked_up_at)
+            self._tokens.move_to_end(fingerprint)
+            while len(self._tokens) > self._max_secrets:
+                self._tokens.popitem(last=False)
 
     def forget(self, fingerprint: bytes) -> None:
         with self._lock:
-            self._fingerprints.pop(fingerprint, None)
+            self._tokens.pop(fingerprint, None)
+
+    def distrust_all(self) -> None:
+        """Has every secret looked up again: something was revoked."""
+        with self._lock:
+            self._distrusted_at = self._clock()

@@ -17,6 +17,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, DisconnectionError, Integr
 from partwise.errors import ConfigError, ConflictError, StoreError
 
 BUSY_TIMEOUT_S = 30.0
+KEPT_CONNECTIONS = 20  # more than handlers run at once: making one costs more than all that a request asks of it
 CONNECT_TIMEOUT_S = 10  # the driver's own is over two minutes
 _WRITES = "partwise_writes"
 _RESTS_SINCE = "partwise_rests_since"
@@ -55,7 +56,7 @@ def connect_engine(url: URL) -> Engine:
     is_sqlite = url.drivername == "sqlite"
     patience = {} if is_sqlite or "connect_timeout" in url.query else {"connect_timeout": CONNECT_TIMEOUT_S}
     try:
-        engine = create_engine(url, pool_use_lifo=True, connect_args=patience)
+        engine = create_engine(url, pool_size=KEPT_CONNECTIONS, pool_use_lifo=True, connect_args=patience)
     except (ImportError, NoSuchModuleError) as error:
         raise StoreError(f"{url.drivername} needs a driver ({error}); install partwise[cloud]") from error
     if is_sqlite:

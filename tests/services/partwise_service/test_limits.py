@@ -1,13 +1,16 @@
 """Limits on bodies, the limiter by itself, and the headers that every answer has."""
 
 import asyncio
+from dataclasses import replace
+from datetime import UTC, datetime
 
 import pytest
 
+from partwise.store.records import Token
 from partwise_service.app import UPLOAD_PATH
 from partwise_service.security.middleware import BodyLimitMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
-from partwise_service.security.recent import RecentlyGood
+from partwise_service.security.recent import TRUST_S, RecentlyGood
 from partwise_service.settings import ServiceSettings
 
 LIMIT = 2_000
@@ -115,11 +118,40 @@ def test_the_limiter_forgets_the_oldest_key_when_it_is_full() -> None:
     assert [limiter.wait_s(key) > 0 for key in "abc"] == [False, True, True]
 
 
-def test_recent_secrets_are_bounded() -> None:
-    recent = RecentlyGood(max_secrets=2)
-    for fingerprint in (b"a", b"b", b"c"):
-        recent.remember(fingerprint)
-    assert [recent.holds(each) for each in (b"a", b"b", b"c")] == [False, True, True]
+@pytest.fixture
+def good_token(annotator, workspace) -> Token:
+    return workspace.catalog.authenticate(annotator.secret)
+
+
+class TestRecentSecrets:
+    def test_they_are_bounded(self, good_token) -> None:
+        recent = RecentlyGood(lambda: 0.0, max_secrets=2)
+        for fingerprint in (b"a", b"b", b"c"):
+            recent.remember(fingerprint, good_token, 0.0)
+        assert [recent.holds(each) for each in (b"a", b"b", b"c")] == [False, True, True]
+
+    def test_they_are_trusted_for_seconds(self, good_token) -> None:
+        now = [7.0]
+        recent = RecentlyGood(lambda: now[0])
+        recent.remember(b"a", good_token, now[0])
+        assert recent.trusted(b"a") == good_token
+        now[0] += TRUST_S
+        assert recent.trusted(b"a") is None
+        assert recent.holds(b"a")
+
+    def test_a_revocation_ends_all_trust_also_in_what_was_being_looked_up(self, good_token) -> None:
+        now = [7.0]
+        recent = RecentlyGood(lambda: now[0])
+        recent.remember(b"a", good_token, now[0])
+        now[0] += 1
+        recent.distrust_all()
+        recent.remember(b"b", good_token, 7.5)
+        assert recent.trusted(b"a") is recent.trusted(b"b") is None
+
+    def test_an_expired_token_is_not_trusted(self, good_token) -> None:
+        recent = RecentlyGood(lambda: 7.0)
+        recent.remember(b"a", replace(good_token, expires_at=datetime.now(UTC)), 7.0)
+        assert recent.trusted(b"a") is None
 
 
 @pytest.mark.parametrize("path", ["/me", "/nothing", "/openapi.json"])
