@@ -20,8 +20,18 @@ export function useShortcuts(actions: WorkbenchActions): void {
       if (!event.repeat || isRepeatable(found.key)) found.shortcut.run(latest.current, found.key);
     };
     window.addEventListener("keydown", onKeyDown);
-    return () => window.removeEventListener("keydown", onKeyDown);
+    window.addEventListener("mousedown", leaveFocus);
+    return () => {
+      window.removeEventListener("keydown", onKeyDown);
+      window.removeEventListener("mousedown", leaveFocus);
+    };
   }, []);
+}
+
+/** A button that was clicked does not get the focus: Enter after a click on Undo is to confirm, not to undo once more. */
+function leaveFocus(event: MouseEvent): void {
+  const isPressed = event.target instanceof Element && event.target.closest("button") !== null;
+  if (isPressed && document.querySelector("dialog[open]") === null) event.preventDefault();
 }
 
 function isMeantElsewhere({ target, key }: KeyboardEvent): boolean {
