@@ -281,12 +281,13 @@ def browse(
         return context
 
     yield new_context
-    if request.node.stash.get(FAILED, False):
+    is_failed = request.node.stash.get(FAILED, False)
+    if is_failed:
         for at, page in enumerate(page for context in contexts for page in context.pages):
             page.screenshot(path=tmp_path / f"tab-{at}.png")
     for context in contexts:
         context.close()
-    assert errors == []
+    assert is_failed or errors == []
 
 
 @dataclass(frozen=True)
@@ -377,7 +378,15 @@ class Bench:
         return list(self.get(f"/drafts/{draft_id}/strokes")["items"])
 
     def labels(self, draft_id: int) -> np.ndarray:
-        answer = self.page.context.request.get(f"{self.origin}/api/v1/drafts/{draft_id}/labels")
+        """(m,) labels that the strokes on record leave."""
+        return self._labels_at(f"/drafts/{draft_id}/labels")
+
+    def labels_of(self, shape_id: int, segmentation: str) -> np.ndarray:
+        """(m,) labels of a shape on record."""
+        return self._labels_at(f"/shapes/{shape_id}/labels?segmentation={segmentation}")
+
+    def _labels_at(self, path: str) -> np.ndarray:
+        answer = self.page.context.request.get(f"{self.origin}/api/v1{path}")
         assert answer.ok, answer.text()
         return load(answer.body())["labels"]
 
@@ -389,6 +398,7 @@ class Bench:
 
     def expect_recorded(self, draft_id: int, n_strokes: int) -> list[dict[str, Any]]:
         """So many strokes are on record, each once and in order, and leave the labels that are shown; the strokes."""
+        self.until(lambda: len(self.strokes(draft_id)) >= n_strokes)
         self.wait_saved()
         strokes = self.strokes(draft_id)
         assert [stroke["sequence"] for stroke in strokes] == list(range(n_strokes))
@@ -398,6 +408,12 @@ class Bench:
         expected = [*counts[1:].tolist(), int(counts[0])]
         self.until(lambda: list(self.shown().values()) == expected)
         return [stroke["payload"] for stroke in strokes]
+
+
+@pytest.fixture(scope="session")
+def bench_in() -> type[Bench]:
+    """`Bench`, for tests that log in by themselves."""
+    return Bench
 
 
 @pytest.fixture

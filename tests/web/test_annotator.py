@@ -1,0 +1,248 @@
+"""The way of an annotator, from the address that `partwise up` shows to a model that has learnt from them."""
+
+import shutil
+
+import pytest
+from playwright.sync_api import expect
+
+from partwise.workspace.workspace import open_workspace
+
+SEAT, BACK = (0.44, 0.42), (0.5, 0.2)
+"""Places on a chair that was just opened, as shares of the view."""
+START = 1
+"""Strokes of a draft before its person does anything: the labels that it starts from."""
+TRAINING_MS = 120_000
+
+
+@pytest.fixture(scope="module")
+def service(finished_chairs, tmp_path_factory, serve):
+    """One service for all tests of this module: each has people of its own, and gives back what they held."""
+    workspace = shutil.copytree(finished_chairs, tmp_path_factory.mktemp("served") / "workspace")
+    with serve(workspace) as started:
+        yield started
+
+
+@pytest.fixture
+def bench(log_in, request):
+    """An annotator of this test's own, with the next shape of the queue in hand."""
+    opened = log_in(f"who tests {request.node.name}")
+    opened.open()
+    return opened
+
+
+def kinds(strokes) -> list[str]:
+    return [stroke["kind"] for stroke in strokes]
+
+
+def ranking(bench) -> list[tuple[str, float, int]]:
+    """Shapes in the order of their scores, as the service has it."""
+    shapes = bench.get("/collections/1/shapes?order=entropy&direction=desc")["items"]
+    return [(shape["source_key"], shape["score"], shape["model_version"]) for shape in shapes]
+
+
+def tiles(table) -> list[str]:
+    return [
+        tile.split(",")[0] for tile in table.get_by_role("gridcell").evaluate_all("all => all.map(e => e.ariaLabel)")
+    ]
+
+
+def start_from(bench, choice: str) -> None:
+    bench.page.get_by_role("button", name="Start from").click()
+    bench.page.get_by_role("menuitem", name=choice).click()
+
+
+def label_by_patches(bench) -> None:
+    """From nothing: a click on the seat, a drag over the back. The rest stays grey."""
+    with bench.page.expect_response("**/patches"):
+        start_from(bench, "Patches")
+    expect(bench.page.get_by_text("Cutting…")).to_be_hidden()
+    bench.page.keyboard.press("1")
+    bench.click_at(*SEAT)
+    bench.page.keyboard.press("2")
+    bench.drag(BACK, (BACK[0] + 0.1, BACK[1]))
+    shown = bench.shown()
+    assert shown["seat"] > 0
+    assert shown["back"] > 0
+    assert shown["leg"] == shown["arm"] == 0 < shown["Unlabelled"]
+
+
+def refine_boundaries(bench) -> None:
+    bench.page.keyboard.press("r")
+    expect(bench.page.get_by_role("button", name="Boundaries again")).to_be_enabled()
+    assert bench.shown()["Unlabelled"] == 0  # boundary refinement fills what is grey
+
+
+def test_from_logging_in_to_another_model(chairs, serve, browse, bench_in) -> None:
+    with open_workspace(chairs) as workspace:
+        workspace.catalog.update_collection_settings(1, {"train_after": 1})
+    with serve(chairs, "up") as up:
+        table = browse().new_page()
+        table.goto(up.login_url)
+        expect(table.get_by_role("link", name="Workbench")).to_be_visible()
+        table.goto(f"{up.origin}/c/1/table?order=entropy&dir=desc")
+        bench = bench_in(table.context.new_page(), up.origin)
+        bench.open()
+        name, lease, draft = bench.shape_name, bench.lease(), bench.draft()
+        scores = ranking(bench)
+        tile = table.get_by_role("gridcell", name=name)
+        expect(tile).to_have_attribute("data-state", "ready")
+        assert tiles(table) == [shape for shape, _, _ in scores]
+
+        label_by_patches(bench)
+        refine_boundaries(bench)
+        bench.page.keyboard.press("b")
+        bench.page.keyboard.press("4")
+        bench.click_at(*SEAT)
+        painted = bench.shown()
+        bench.page.get_by_role("button", name="Undo").click()
+        assert bench.shown()["arm"] < painted["arm"]
+        bench.page.keyboard.press("Control+Shift+z")
+        assert bench.shown() == painted
+        strokes = bench.expect_recorded(draft["id"], START + 7)
+        assert kinds(strokes[START:]) == ["clear", "assign", "assign", "delta", "paint", "undo", "redo"]
+
+        bench.page.keyboard.press("Enter")  # though Undo was clicked last
+        expect(bench.page.get_by_text(f"{name} is confirmed.")).to_be_attached()
+        bench.wait_saved()
+        assert bench.shape_name != name
+        revision = bench.get(f"/shapes/{lease['shape_id']}/revisions")["items"][0]
+        assert revision["sha256"] == bench.get(f"/drafts/{draft['id']}")["labels_sha256"]
+
+        expect(tile).to_have_attribute("data-state", "confirmed")  # without a reload
+        expect(table.get_by_role("status", name="Training")).to_contain_text("Training", timeout=TRAINING_MS)
+        next_model = lease["model_version"] + 1
+        expect(tile).to_contain_text(f"m{next_model}", timeout=TRAINING_MS)
+        bench.until(lambda: {model for _, _, model in ranking(bench)} == {next_model})
+        assert ranking(bench) != scores
+        table.get_by_role("button", name="Show", exact=True).click()
+        bench.until(lambda: tiles(table) == [shape for shape, _, _ in ranking(bench)])
+        table.context.close()  # before the service ends, which it would log
+
+
+def test_every_tool_by_keyboard(bench) -> None:
+    """Turned so that the seat is in the middle, where keys press."""
+    press = bench.page.keyboard.press
+    draft_id = bench.draft()["id"]
+    start_from(bench, "Nothing")
+    bench.view.focus()
+    press("Shift+t")
+    press("1")
+    press("b")
+    press("]")
+    press("Space")
+    with bench.page.expect_response("**/patches"):
+        press("p")
+    expect(bench.page.get_by_text("Cutting…")).to_be_hidden()
+    press("3")
+    press("Space")
+    press("r")
+    expect(bench.page.get_by_role("button", name="Boundaries again")).to_be_enabled()
+    with bench.page.expect_response("**/refine-model"):
+        press("m")
+    bench.until(lambda: len(bench.strokes(draft_id)) == START + 5)
+    press("w")
+    press("2")
+    press("Space")
+    press("i")
+    press("Space")
+    expect(bench.page.get_by_role("radio", name="back")).to_be_checked()
+    expect(bench.page.get_by_role("button", name="Paint")).to_have_attribute("aria-pressed", "true")
+    press("e")
+    press("Space")
+    press("Control+z")
+    press("Control+y")
+    strokes = bench.expect_recorded(draft_id, START + 9)
+    assert kinds(strokes[START:]) == [
+        "clear", "paint", "assign", "delta", "delta", "segment_wide", "paint", "undo", "redo"
+    ]  # fmt: skip
+    assert [stroke["source"] for stroke in strokes if stroke["kind"] == "delta"] == [
+        "start_from", "boundary_refinement", "model_refinement"
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("choice", "segmentation"), [("Predicted labels", "predicted"), ("Refined labels", "refined")])
+def test_a_shape_starts_from_what_the_model_says(bench, choice, segmentation) -> None:
+    draft, lease = bench.draft(), bench.lease()
+    start_from(bench, "Nothing")
+    start_from(bench, choice)
+    strokes = bench.expect_recorded(draft["id"], START + 2)
+    assert strokes[-1]["parameters"] == {"from": segmentation}
+    assert bench.labels_of(lease["shape_id"], segmentation).tolist() == bench.labels(draft["id"]).tolist()
+
+
+def test_a_shape_is_skipped_with_a_reason(bench) -> None:
+    name, lease = bench.shape_name, bench.lease()
+    bench.page.keyboard.press("s")
+    dialog = bench.page.get_by_role("dialog", name=f"Skip {name}")
+    dialog.get_by_role("radio", name="None of the parts fit").check()
+    dialog.get_by_label("Note").fill("It is a stool")
+    dialog.get_by_role("button", name="Skip this shape").click()
+    expect(dialog).to_be_hidden()
+    bench.wait_saved()
+    assert bench.shape_name != name
+    assert lease["id"] not in {held["id"] for held in bench.get("/leases")["items"]}
+
+
+def test_the_sheet_of_keys_tells_what_keys_do(bench) -> None:
+    bench.page.keyboard.press("?")
+    sheet = bench.page.get_by_role("dialog", name="Keys of the workbench")
+    expect(sheet.get_by_text("Confirm and next")).to_be_visible()
+    bench.page.keyboard.press("Escape")
+    expect(sheet).to_be_hidden()
+
+
+def test_several_views_of_one_shape_and_of_several(bench) -> None:
+    views = bench.page.get_by_role("region", name="View")
+    bench.page.keyboard.press("v")
+    expect(views).to_have_count(2)
+    bench.page.keyboard.press("l")
+    expect(bench.page.get_by_role("button", name="Link cameras")).to_have_attribute("aria-pressed", "true")
+
+    bench.page.get_by_role("button", name="A shape in each view").click()
+    expect(bench.page.get_by_text("Room for another shape")).to_be_visible()
+    bench.page.get_by_role("button", name="Take the next of the queue").click()
+    expect(bench.page.get_by_text("Room for another shape")).to_be_hidden()
+    held = [lease for lease in bench.get("/leases")["items"] if not lease["is_prefetched"]]
+    assert len(held) == 2
+    for lease in held:
+        expect(bench.page.get_by_role("region", name=lease["source_key"])).to_be_visible()
+
+
+def test_a_reload_returns_to_the_same_shape_and_stroke(bench) -> None:
+    name, draft_id = bench.shape_name, bench.draft()["id"]
+    bench.page.keyboard.press("e")
+    bench.click_at(*SEAT)
+    bench.page.keyboard.press("Control+z")
+    before = bench.shown()
+    bench.page.reload()
+    strokes = bench.expect_recorded(draft_id, START + 2)
+    assert kinds(strokes[START:]) == ["paint", "undo"]
+    assert bench.shape_name == name
+    assert bench.shown() == before
+    bench.page.keyboard.press("Control+Shift+z")  # undo and redo outlive it
+    assert kinds(bench.expect_recorded(draft_id, START + 3))[-1] == "redo"
+
+
+def test_an_empty_queue_says_so_and_when_there_is_something_again(bench, log_in) -> None:
+    others = [log_in(f"one of many {n}") for n in range(2)]
+    taken = [
+        other.post("/queue/claim", collection_id=1, shape_ids=some)
+        for other, some in zip(others, halves(bench), strict=True)
+    ]
+    held = bench.get("/leases")["items"]
+    bench.page.goto(f"{bench.origin}/c/1/table")
+    for lease in held:
+        bench.post(f"/leases/{lease['id']}/skip", reason="nothing fits")
+    bench.page.goto(f"{bench.origin}/c/1/work")
+    expect(bench.page.get_by_text("Nothing waits for you")).to_be_visible()
+    assert others[0].post(f"/leases/{taken[0]['items'][0]['id']}/release")
+    expect(bench.page.get_by_text("The queue has changed")).to_be_visible()
+    bench.page.get_by_role("button", name="Take the next shape").click()
+    bench.wait_saved()
+
+
+def halves(bench) -> tuple[list[int], list[int]]:
+    """Shapes that wait and are not this person's, in two parts, since nobody holds more than four."""
+    own = {lease["shape_id"] for lease in bench.get("/leases")["items"]}
+    rest = [shape["id"] for shape in bench.get("/collections/1/shapes?state=ready")["items"] if shape["id"] not in own]
+    return rest[::2], rest[1::2]
