@@ -1,5 +1,5 @@
 import { useMemo } from "react";
-import { count } from "../../../components/numbers";
+import { count, percent, short } from "../../../components/numbers";
 import { useObservableOr } from "../../../drafts/useObservable";
 import { partShares } from "../../../labels/partShares";
 import { keyOfPart, type Part, UNLABELLED_NAME } from "../parts";
@@ -29,7 +29,11 @@ export function PartsList({ parts, part, open, onPick }: PartsListProps) {
   ];
   return (
     <fieldset className={styles.parts}>
-      <legend className={styles.legend}>Parts</legend>
+      <legend className={styles.legend}>
+        <span>Parts</span>
+        <span className={styles.faces}>Faces</span>
+        <span className={styles.share}>Area</span>
+      </legend>
       {rows.map(({ id, name, colour, gloss, keys }) => {
         const share = shares.get(id) ?? { nFaces: 0, area: 0 };
         return (
@@ -43,7 +47,8 @@ export function PartsList({ parts, part, open, onPick }: PartsListProps) {
             />
             <span className={styles.swatch} style={{ background: colour }} />
             <span className={styles.name}>{name}</span>
-            <span className={styles.share}>{open === null ? "" : `${(100 * share.area).toFixed(1)}%`}</span>
+            <span className={styles.faces}>{open === null ? "" : short(share.nFaces)}</span>
+            <span className={styles.share}>{open === null ? "" : percent(share.area)}</span>
             <span className={styles.key} aria-hidden="true">
               {keys !== null && <kbd>{keys}</kbd>}
             </span>

@@ -105,6 +105,8 @@ interface OneViewProps extends ViewGridProps {
 function OneView(props: OneViewProps) {
   const { stage, shelf, parts, patches, views, held, at, isByShape, onEngage, onLive, scheme } = props;
   const settings = useObservable(shelf.settings);
+  const { tool, part, radius, hasAngleLimit, angleDegrees, onlyOver } = settings;
+  const toolKey = [tool, part, radius, hasAngleLimit && angleDegrees, onlyOver].join(" ");
   const isCurrent = held === props.current;
   const colours = useMemo(() => new Map(parts.map((part) => [part.id, part.colour])), [parts]);
   const context: GestureContext = {
@@ -123,7 +125,7 @@ function OneView(props: OneViewProps) {
       firstLook={isByShape ? FIRST_LOOKS[0] : (FIRST_LOOKS[at] ?? FIRST_LOOKS[0])}
       parts={parts}
       scheme={scheme}
-      toolKey={`${settings.tool} ${settings.radius}`}
+      toolKey={toolKey}
       isActive={props.isActive}
       title={isByShape ? held.lease.source_key : null}
       context={context}

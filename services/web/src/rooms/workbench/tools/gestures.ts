@@ -1,9 +1,9 @@
 /** What a press, a drag and hovering on the surface mean with the tool in hand. */
-import { cosineOfLimit, Drag } from "../../../geometry/paint";
+import { type Brush, clickedFaces, cosineOfLimit, Drag } from "../../../geometry/paint";
 import { regionOf } from "../../../geometry/region";
 import { runsOf } from "../../../labels/faceRuns";
 import type { Operation, Paint } from "../../../labels/operations";
-import type { Hit } from "../../../viewer/shapeModel";
+import type { Hit, ShapeModel } from "../../../viewer/shapeModel";
 import type { ShapeView, ViewListener } from "../../../viewer/shapeView";
 import type { OpenShape } from "../shape/openShape";
 import type { PatchMap } from "./patchMap";
@@ -26,6 +26,8 @@ export class ToolGestures implements ViewListener {
   private drag: { readonly faces: Drag; readonly stroke: Omit<Paint, "seeds"> } | null = null;
   private taken: Set<number> | null = null;
   private region: { readonly faces: Uint32Array; readonly version: number } | null = null;
+  /** Where the pointer rests, so that keys change what is shown there at once. */
+  private pointer: { readonly hit: Hit; readonly on: ShapeModel } | null = null;
 
   constructor(
     private readonly view: ShapeView,
@@ -40,15 +42,18 @@ export class ToolGestures implements ViewListener {
     this.view.strokeSpacing = tool === "paint" ? radius * SPACING : 0;
     this.region = null;
     if (tool !== "paint") model?.setBrush(null);
+    if (this.isStroking) return;
     model?.setPreview(null);
+    if (this.pointer !== null && this.pointer.on === model) this.hover(this.pointer.hit);
   }
 
   hover(hit: Hit | null): void {
     const open = this.context.open();
     if (open === null) return;
+    this.pointer = hit === null ? null : { hit, on: open.model };
     const { tool, radius } = this.settings;
     if (tool === "paint") open.model.setBrush(hit === null ? null : { point: hit.point, radius });
-    else if (this.taken === null) open.model.setPreview(this.hovered(open, hit), this.colour());
+    if (!this.isStroking) open.model.setPreview(this.hovered(open, hit), this.colour());
   }
 
   strokeStart(hit: Hit): void {
@@ -98,6 +103,10 @@ export class ToolGestures implements ViewListener {
     return true;
   }
 
+  private get isStroking(): boolean {
+    return this.drag !== null || this.taken !== null;
+  }
+
   private get settings(): ToolSettings {
     return this.context.shelf.settings.get();
   }
@@ -108,13 +117,22 @@ export class ToolGestures implements ViewListener {
 
   /** Settings are those of the moment: keys may change them while the drag goes on. */
   private startPaint(open: OpenShape, hit: Hit): void {
-    const { part, radius, hasAngleLimit, angleDegrees, onlyOver } = this.settings;
-    const { labels } = open;
-    const min_cosine = hasAngleLimit ? cosineOfLimit(angleDegrees) : null;
-    const isOpen = onlyOver === null ? undefined : (face: number) => labels[face] === onlyOver;
-    const faces = new Drag(open.model.mesh, { radius, min_cosine }, isOpen);
-    this.drag = { faces, stroke: { kind: "paint", radius, min_cosine, label: part, only_over: onlyOver } };
+    const { part, onlyOver } = this.settings;
+    const brush = this.brush();
+    const faces = new Drag(open.model.mesh, brush, this.opened(open));
+    this.drag = { faces, stroke: { kind: "paint", ...brush, label: part, only_over: onlyOver } };
     open.model.setPreview(faces.click(hit.face), this.colour());
+  }
+
+  private brush(): Brush {
+    const { radius, hasAngleLimit, angleDegrees } = this.settings;
+    return { radius, min_cosine: hasAngleLimit ? cosineOfLimit(angleDegrees) : null };
+  }
+
+  /** Which faces may be painted; all where it is left out. */
+  private opened({ labels }: OpenShape): ((face: number) => boolean) | undefined {
+    const { onlyOver } = this.settings;
+    return onlyOver === null ? undefined : (face) => labels[face] === onlyOver;
   }
 
   private takePatches(open: OpenShape, hits: readonly Hit[]): void {
@@ -132,8 +150,9 @@ export class ToolGestures implements ViewListener {
   }
 
   private hovered(open: OpenShape, hit: Hit | null): Uint32Array | null {
-    if (hit === null) return null;
+    if (hit === null || !open.canEdit) return null;
     const { tool } = this.settings;
+    if (tool === "paint") return clickedFaces(open.model.mesh, hit.face, this.brush(), this.opened(open));
     if (tool === "patches") return this.context.patches()?.around(hit.face) ?? null;
     if (tool !== "segment") return null;
     const version = open.version.get();
