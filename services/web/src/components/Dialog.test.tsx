@@ -2,6 +2,7 @@
 import { cleanup, fireEvent, render, screen } from "@testing-library/react";
 import { afterEach, beforeAll, describe, expect, it, vi } from "vitest";
 import { Dialog } from "./Dialog";
+import { ToastProvider, useToast } from "./Toasts";
 
 beforeAll(() => {
   // What jsdom's dialogs lack: being modal.
@@ -60,4 +61,27 @@ describe("a dialog", () => {
     window.removeEventListener("keydown", onKey);
     expect(onKey).not.toHaveBeenCalled();
   });
+
+  it("shows toasts within itself, as what is behind it cannot be reached", () => {
+    const shown = (isOpen: boolean) => (
+      <ToastProvider>
+        <Teller />
+        {isOpen && <Dialog title="New">text</Dialog>}
+      </ToastProvider>
+    );
+    const { rerender } = render(shown(true));
+    fireEvent.click(screen.getByRole("button", { name: "Tell" }));
+    expect(screen.getByRole("dialog").contains(screen.getByText("Told."))).toBe(true);
+    rerender(shown(false));
+    expect(screen.getByText("Told.")).toBeDefined();
+  });
 });
+
+function Teller() {
+  const toast = useToast();
+  return (
+    <button type="button" onClick={() => toast({ message: "Told.", tone: "bad" })}>
+      Tell
+    </button>
+  );
+}

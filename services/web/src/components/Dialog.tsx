@@ -3,6 +3,7 @@ import { type ReactNode, useEffect, useId, useRef } from "react";
 import { classes } from "./classes";
 import styles from "./Dialog.module.css";
 import { IconButton } from "./IconButton";
+import { useToastHost } from "./toastHost";
 
 export interface DialogProps {
   title: string;
@@ -26,6 +27,7 @@ export function Dialog({ title, onClose, children, footer, size = "normal", isAl
     firstToFocus(shown)?.focus();
     return () => shown?.close();
   }, []);
+  useToastHost(dialog);
   return (
     <dialog
       ref={dialog}

@@ -1,5 +1,4 @@
 import { type KeyboardEvent, type ReactNode, useId, useLayoutEffect, useRef, useState } from "react";
-import { classes } from "./classes";
 import styles from "./Menu.module.css";
 import { type Alignment, placeBeside } from "./placement";
 
@@ -94,78 +93,4 @@ function nextFocus(items: readonly HTMLElement[], key: string): HTMLElement | un
   if (key.length !== 1 || key === " ") return undefined;
   const after = [...items.slice(at + 1), ...items.slice(0, at + 1)];
   return after.find((item) => item.textContent?.trim().toLowerCase().startsWith(key.toLowerCase()));
-}
-
-export interface MenuItemProps {
-  children: ReactNode;
-  onSelect: () => void;
-  icon?: ReactNode;
-  shortcut?: string;
-  isDisabled?: boolean;
-  tone?: "normal" | "danger";
-}
-
-export function MenuItem({
-  children,
-  onSelect,
-  icon,
-  shortcut,
-  isDisabled = false,
-  tone = "normal",
-}: MenuItemProps) {
-  return (
-    <button
-      type="button"
-      role="menuitem"
-      tabIndex={-1}
-      className={classes(styles.item, tone === "danger" && styles.danger)}
-      disabled={isDisabled}
-      onClick={onSelect}
-    >
-      <span className={styles.mark}>{icon}</span>
-      <span className={styles.words}>{children}</span>
-      {shortcut !== undefined && <kbd>{shortcut}</kbd>}
-    </button>
-  );
-}
-
-export interface MenuChoiceProps {
-  children: ReactNode;
-  isChecked: boolean;
-  onSelect: () => void;
-  /** Several may be chosen. */
-  isMultiple?: boolean;
-  icon?: ReactNode;
-}
-
-export function MenuChoice({ children, isChecked, onSelect, isMultiple = false, icon }: MenuChoiceProps) {
-  return (
-    // biome-ignore lint/a11y/useAriaPropsSupportedByRole: both roles that it may have support aria-checked
-    <button
-      type="button"
-      role={isMultiple ? "menuitemcheckbox" : "menuitemradio"}
-      aria-checked={isChecked}
-      tabIndex={-1}
-      className={styles.item}
-      onClick={onSelect}
-    >
-      <span className={styles.mark}>{icon}</span>
-      <span className={styles.words}>{children}</span>
-      <span className={styles.tick} aria-hidden="true">
-        {isChecked ? "✓" : ""}
-      </span>
-    </button>
-  );
-}
-
-export function MenuHeading({ children }: { children: ReactNode }) {
-  return (
-    <p className={styles.heading} role="presentation">
-      {children}
-    </p>
-  );
-}
-
-export function MenuLine() {
-  return <hr className={styles.line} />;
 }

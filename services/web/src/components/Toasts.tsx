@@ -1,8 +1,10 @@
 import { X } from "lucide-react";
 import { createContext, type ReactNode, useCallback, useContext, useMemo, useRef, useState } from "react";
+import { createPortal } from "react-dom";
 import { classes } from "./classes";
 import { IconButton } from "./IconButton";
 import styles from "./Toasts.module.css";
+import { type HostToasts, ToastHostContext } from "./toastHost";
 
 const SHOWN_MS = 6_000;
 const MAX_SHOWN = 4;
@@ -31,6 +33,7 @@ export function useToast(): ShowToast {
 
 export function ToastProvider({ children }: { children: ReactNode }) {
   const [toasts, setToasts] = useState<readonly ShownToast[]>([]);
+  const [hosts, setHosts] = useState<readonly HTMLElement[]>([]);
   const lastId = useRef(0);
   const close = useCallback((id: number) => setToasts((shown) => shown.filter((each) => each.id !== id)), []);
   const show = useCallback<ShowToast>(
@@ -44,15 +47,22 @@ export function ToastProvider({ children }: { children: ReactNode }) {
     },
     [close],
   );
+  const hostToasts = useCallback<HostToasts>((host) => {
+    setHosts((open) => [...open, host]);
+    return () => setHosts((open) => open.filter((each) => each !== host));
+  }, []);
   const urgent = useMemo(() => toasts.filter((each) => each.tone === "bad"), [toasts]);
   const calm = useMemo(() => toasts.filter((each) => each.tone !== "bad"), [toasts]);
   return (
     <ToastContext value={show}>
-      {children}
-      <div className={styles.corner}>
-        <ToastList toasts={urgent} politeness="assertive" onClose={close} />
-        <ToastList toasts={calm} politeness="polite" onClose={close} />
-      </div>
+      <ToastHostContext value={hostToasts}>{children}</ToastHostContext>
+      {createPortal(
+        <div className={styles.corner}>
+          <ToastList toasts={urgent} politeness="assertive" onClose={close} />
+          <ToastList toasts={calm} politeness="polite" onClose={close} />
+        </div>,
+        hosts.at(-1) ?? document.body,
+      )}
     </ToastContext>
   );
 }
