@@ -1,16 +1,15 @@
 import { useInfiniteQuery } from "@tanstack/react-query";
 import { RotateCcw } from "lucide-react";
 import { useState } from "react";
-import { Button, DataTable, Panel, Select } from "../../../components";
-import { count, whole } from "../../../components/numbers";
+import { Button, DataTable, Panel } from "../../../components";
+import { whole } from "../../../components/numbers";
 import { LoadMore } from "../LoadMore";
 import { PanelError } from "../PanelError";
-import { type Failure, type FailureFilter, type FailureKind, failuresQuery, type Ops } from "../queries";
-import { stageName } from "../stageWords";
+import { type Failure, type FailureFilter, failuresQuery, type Ops } from "../queries";
 import { FailureDialog } from "./FailureDialog";
-import styles from "./FailuresPanel.module.css";
+import { FailureFilters } from "./FailureFilters";
+import { FailureKinds } from "./FailureKinds";
 import { failureColumns } from "./failureColumns";
-import { FAILURE_WORDS } from "./failureWords";
 import { useRetryFailures } from "./useRetryFailures";
 
 interface FailuresPanelProps {
@@ -45,7 +44,7 @@ export function FailuresPanel({ collectionId, ops, className }: FailuresPanelPro
       description="Shapes that a stage gave up after a few tries. The rest of the collection goes on without them."
       actions={
         <>
-          <Filters ops={ops} filter={filter} onChange={change} />
+          <FailureFilters ops={ops} filter={filter} onChange={change} />
           <Button
             size="small"
             icon={<RotateCcw />}
@@ -64,7 +63,7 @@ export function FailuresPanel({ collectionId, ops, className }: FailuresPanelPro
         </>
       }
     >
-      {ops && <Kinds ops={ops} />}
+      {ops && <FailureKinds ops={ops} />}
       {failures.error && !failures.data ? (
         <PanelError what="Failures" error={failures.error} onRetry={failures.refetch} />
       ) : (
@@ -99,55 +98,4 @@ export function FailuresPanel({ collectionId, ops, className }: FailuresPanelPro
 
 function present({ kind, stage }: FailureFilter) {
   return { ...(kind && { kind }), ...(stage && { stage }) };
-}
-
-function Kinds({ ops }: { ops: Ops }) {
-  const kinds = Object.entries(ops.failures) as [FailureKind, number][];
-  const seen = kinds.filter(([, n]) => n > 0);
-  if (seen.length === 0) return null;
-  return (
-    <ul className={styles.kinds} aria-label="Failures by kind">
-      {seen.map(([kind, n]) => (
-        <li key={kind}>
-          <strong>{count(n, "failure")}</strong> · {FAILURE_WORDS[kind].name}
-          <span className={styles.advice}> {FAILURE_WORDS[kind].advice}</span>
-        </li>
-      ))}
-    </ul>
-  );
-}
-
-function Filters(props: {
-  ops: Ops | undefined;
-  filter: FailureFilter;
-  onChange: (part: Partial<FailureFilter>) => void;
-}) {
-  const { ops, filter, onChange } = props;
-  const kinds = Object.keys(FAILURE_WORDS) as FailureKind[];
-  return (
-    <>
-      <Select
-        label="Kind of failure"
-        isLabelUnseen
-        size="small"
-        value={filter.kind ?? ""}
-        options={[
-          { value: "", label: "All kinds" },
-          ...kinds.map((kind) => ({ value: kind, label: FAILURE_WORDS[kind].name })),
-        ]}
-        onChange={(kind) => onChange({ kind: kind === "" ? null : kind })}
-      />
-      <Select
-        label="Stage that failed"
-        isLabelUnseen
-        size="small"
-        value={filter.stage ?? ""}
-        options={[
-          { value: "", label: "All stages" },
-          ...(ops?.stages ?? []).map(({ stage }) => ({ value: stage, label: stageName(stage) })),
-        ]}
-        onChange={(stage) => onChange({ stage: stage === "" ? null : stage })}
-      />
-    </>
-  );
 }
