@@ -7,6 +7,7 @@ import styles from "./ShapeGrid.module.css";
 import { ShapeTile, type TileLook, tileId } from "./ShapeTile";
 import { useGridPointer } from "./useGridPointer";
 import { useGridVirtualizer } from "./useGridVirtualizer";
+import { useSelectAllKey } from "./useSelectAllKey";
 import { useSize } from "./useSize";
 
 export interface ShapeGridProps {
@@ -47,6 +48,10 @@ export function ShapeGrid({ nShapes, look, selection: chosen, rowAt, onWindow, o
     selection.chosen.size > 0,
   );
 
+  useSelectAllKey(() => {
+    chosen.all(nShapes);
+    scroller.current?.focus({ preventScroll: true });
+  });
   const onKeyDown = (event: KeyboardEvent) => {
     const isCtrl = event.ctrlKey || event.metaKey;
     const rowsInView = Math.max(1, Math.floor(height / rowPx));
@@ -56,7 +61,6 @@ export function ShapeGrid({ nShapes, look, selection: chosen, rowAt, onWindow, o
       else chosen.move(next);
       grid.show(Math.floor(next / columns));
     } else if (event.key === " ") withRow(cursor, (row) => chosen.toggle(row, cursor));
-    else if (event.key === "a" && isCtrl) chosen.all(nShapes);
     else if (event.key === "Escape" && selection.chosen.size > 0) chosen.none();
     else if (event.key === "Enter") {
       if (selection.chosen.size > 0) onOpen([...selection.chosen.values()]);
