@@ -31,6 +31,7 @@ from partwise_service.schemas.people import (
 MAX_PAGE = 500
 router = APIRouter(route_class=AnswerRoute, tags=["people"])
 AfterId = Annotated[int, Query(ge=0, le=MAX_ROW_ID, description="`next` of the page before.")]
+BeforeId = Annotated[int | None, Query(ge=1, le=MAX_ROW_ID, description="`next` of the page before.")]
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE)]
 
 
@@ -81,9 +82,9 @@ def revoke_token(caller: Caller, service: ServiceDep, token_id: RowId) -> TokenO
 
 
 @router.get("/audit")
-def list_audit(caller: Admin, catalog: CatalogDep, after: AfterId = 0, limit: Limit = 100) -> Page[AuditOut]:
-    """Who did what, oldest first."""
+def list_audit(caller: Admin, catalog: CatalogDep, before: BeforeId = None, limit: Limit = 100) -> Page[AuditOut]:
+    """Who did what, newest first."""
     require_all_scope(caller)
-    found = catalog.audit(after=after, limit=limit)
-    next_after = str(found[-1].id) if len(found) == limit else None
-    return Page(items=[AuditOut.model_validate(entry) for entry in found], next=next_after)
+    found = catalog.latest_audit(before=before, limit=limit)
+    next_before = str(found[-1].id) if len(found) == limit else None
+    return Page(items=[AuditOut.model_validate(entry) for entry in found], next=next_before)

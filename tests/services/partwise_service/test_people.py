@@ -65,8 +65,16 @@ def test_nobody_ends_the_token_of_another(reviewer, annotator) -> None:
 
 def test_the_audit_trail_says_who_did_what(admin) -> None:
     admin.post("/people", json={"name": "bob"})
-    newest = admin.get("/audit", params={"limit": 500}).json()["items"][-1]
+    newest = admin.get("/audit").json()["items"][0]
     assert (newest["actor"], newest["action"], newest["detail"]) == ("ada", "add person", {"name": "bob"})
+
+
+def test_the_audit_trail_is_read_page_by_page_from_its_end(admin) -> None:
+    for name in ("bob", "cleo", "dan"):
+        admin.post("/people", json={"name": name})
+    first = admin.get("/audit", params={"limit": 2}).json()
+    rest = admin.get("/audit", params={"limit": 1, "before": first["next"]}).json()
+    assert [each["detail"]["name"] for each in first["items"] + rest["items"]] == ["dan", "cleo", "bob"]
 
 
 def test_the_audit_trail_can_only_be_read(admin) -> None:

@@ -91,3 +91,7 @@ class AuditCatalog(Protocol):
     def audit(self, *, after: int = 0, limit: int = 1000) -> Sequence[AuditEntry]:
         """A page of the trail, oldest first."""
         ...
+
+    def latest_audit(self, *, before: int | None = None, limit: int = 1000) -> Sequence[AuditEntry]:
+        """A page of the trail, newest first: entries older than that with the id `before`, if one is given."""
+        ...

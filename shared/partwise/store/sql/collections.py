@@ -249,3 +249,10 @@ def append_audit(
 def audit(connection: Connection, after: int, limit: int) -> Sequence[AuditEntry]:
     query = select(t.audit).where(t.audit.c.id > after).order_by(t.audit.c.id).limit(limit)
     return [AuditEntry(**row._mapping) for row in connection.execute(query)]
+
+
+def latest_audit(connection: Connection, before: int | None, limit: int) -> Sequence[AuditEntry]:
+    query = select(t.audit).order_by(t.audit.c.id.desc()).limit(limit)
+    if before is not None:
+        query = query.where(t.audit.c.id < before)
+    return [AuditEntry(**row._mapping) for row in connection.execute(query)]

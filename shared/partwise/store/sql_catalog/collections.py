@@ -80,3 +80,7 @@ class SqlCollectionCatalog(SqlBase):
     def audit(self, *, after: int = 0, limit: int = 1000) -> Sequence[r.AuditEntry]:
         with reading(self._engine) as connection:
             return collections.audit(connection, after, limit)
+
+    def latest_audit(self, *, before: int | None = None, limit: int = 1000) -> Sequence[r.AuditEntry]:
+        with reading(self._engine) as connection:
+            return collections.latest_audit(connection, before, limit)

@@ -164,3 +164,10 @@ class CollectionConformance:
         first = catalog.audit(limit=2)
         rest = catalog.audit(after=first[-1].id)
         assert [entry.detail["i"] for entry in [*first, *rest]] == [0, 1, 2]
+
+    def test_audit_is_paged_from_its_end(self, catalog: Catalog) -> None:
+        for i in range(3):
+            catalog.append_audit("ann", "look", f"shape {i}", {"i": i})
+        newest = catalog.latest_audit(limit=2)
+        rest = catalog.latest_audit(before=newest[-1].id)
+        assert [entry.detail["i"] for entry in [*newest, *rest]] == [2, 1, 0]

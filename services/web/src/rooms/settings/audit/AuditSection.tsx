@@ -13,19 +13,23 @@ const COLUMNS: readonly Column<Entry>[] = [
   { id: "detail", header: "Details", isWide: true, cell: ({ detail }) => <Detail detail={detail} /> },
 ];
 
-/** Who did what, oldest first, as it was recorded. */
+/** Who did what, newest first, as it was recorded. */
 export function AuditSection() {
   const audit = useInfiniteQuery({
     queryKey: ["audit"],
     queryFn: ({ pageParam }) =>
-      body(api.GET("/api/v1/audit", { params: { query: { after: pageParam, limit: 100 } } })),
+      body(
+        api.GET("/api/v1/audit", {
+          params: { query: { limit: 100, ...(pageParam && { before: pageParam }) } },
+        }),
+      ),
     initialPageParam: 0,
     getNextPageParam: (page) => (page.next ? Number(page.next) : undefined),
   });
   return (
     <Panel
       title="Audit trail"
-      description="What operators and administrators did, oldest first. It cannot be changed."
+      description="What operators and administrators did, newest first. It cannot be changed."
       isFlush
     >
       {audit.error && !audit.data ? (
