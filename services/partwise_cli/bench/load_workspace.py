@@ -45,13 +45,19 @@ class LoadedWorkspace:
 
 
 def make_workspace(
-    path: Path, database_url: str, n_shapes: int, n_people: int, n_own_meshes: int, seed: int
+    path: Path,
+    database_url: str,
+    n_shapes: int,
+    n_people: int,
+    n_own_meshes: int,
+    seed: int,
+    n_faces: int = N_FACES,
 ) -> LoadedWorkspace:
     """Fills an empty folder and an empty database. The first `n_own_meshes` of the queue have a mesh each, of one
     simulated chair in as many sizes; all others share one, as their surfaces are never asked for.
     """
     collection = init_collection(path, COLLECTION, [f"part {n}" for n in range(1, N_PARTS + 1)], {"train_after": 0})
-    chair = simulate_shape("chairs", shape_seed("chairs", seed, 0), "chair", n_faces=N_FACES).mesh
+    chair = simulate_shape("chairs", shape_seed("chairs", seed, 0), "chair", n_faces=n_faces).mesh
     engine = connect_engine(parsed_url(database_url))
     with open_workspace(path) as workspace:
         people = _people(workspace, n_people)

@@ -1,4 +1,4 @@
-"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox, service-tools, load."""
+"""Benchmarks: describe, loo, remeshing, calibration, scheduling, throughput, toolbox, service-tools, load, page."""
 
 import tempfile
 from collections.abc import Iterator
@@ -350,6 +350,29 @@ def load(
         print_load(report)
     if not report.is_sound:
         raise typer.Exit(1)
+
+
+@app.command()
+def page(
+    out: Annotated[Path, typer.Argument(help="New folder, for the workspace and page.json.", show_default=False)],
+    faces: Annotated[int, typer.Option(help="Of the shape that is opened and painted.", min=1_000)] = 50_000,
+    shapes: Annotated[int, typer.Option(help="Rows of the table.", min=100)] = 300_000,
+    repeats: Annotated[int, typer.Option(help="Navigations, with an empty cache and again.", min=1)] = 5,
+    jumps: Annotated[int, typer.Option(help="Places of the table that are looked at.", min=2)] = 60,
+    seed: Annotated[int, typer.Option(help="Of the shape and the rows.", min=0)] = 0,
+    as_json: JsonOption = False,
+) -> None:
+    """The page in a browser.  [dim]partwise bench page build/page --json[/dim]"""
+    from partwise_cli.bench.page import PageRequest, run_page
+    from partwise_cli.bench.page_report import print_page
+
+    request = PageRequest(faces, shapes, repeats, jumps, seed)
+    with progress("page") as advance:
+        report = run_page(out, request, lambda what, n_done, n_total: advance(n_done, n_total, what))
+    if as_json:
+        print_json(asdict(report))
+    else:
+        print_page(report)
 
 
 @contextmanager

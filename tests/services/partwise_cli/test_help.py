@@ -44,7 +44,7 @@ def test_the_commands_are_these() -> None:
         "token revoke", "reviews", "reviews list", "reviews accept", "simulate", "demo", "doctor", "version", "bench",
         "bench describe", "bench service-tools",
         "bench loo", "bench remeshing", "bench calibration", "bench scheduling", "bench throughput", "bench toolbox",
-        "bench load",
+        "bench load", "bench page",
     }  # fmt: skip
 
 
