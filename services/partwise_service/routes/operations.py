@@ -1,6 +1,7 @@
 """/collections/{collection_id}/ops, /rounds, /ops/people: how a collection is doing."""
 
 import shutil
+from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Annotated
@@ -8,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import Job, JobState
+from partwise.store.records import Job, JobState, StageCount
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE, REFINE
 from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import Workspace
@@ -95,16 +96,24 @@ def _measured(workspace: Workspace, collection_id: int) -> OpsOut:
 def _stages(catalog: Catalog, collection_id: int, n_shapes: int, now: datetime) -> list[StageFigures]:
     counts = {each.stage: each for each in catalog.stage_counts(collection_id)}
     paces = catalog.stage_paces(collection_id, now - WINDOW)
-    described = counts[DESCRIBE].n_done if DESCRIBE in counts else 0
     made = []
     for each in sorted(counts.values(), key=lambda each: _position(each.stage)):
-        n_wanting = described if each.stage in (EVALUATE, REFINE) else n_shapes
-        remaining = max(0, n_wanting - each.n_done - each.n_failed)
+        remaining = max(0, _n_reaching(each.stage, counts, n_shapes) - each.n_done - each.n_failed)
         per_min = paces.get(each.stage, 0) / (WINDOW.total_seconds() / 60)
         eta_s = 0.0 if not remaining else (60 * remaining / per_min if per_min else None)
         figures = {"done": each.n_done, "failed": each.n_failed, "remaining": remaining}
         made.append(StageFigures(stage=each.stage, **figures, per_min=per_min, eta_s=eta_s))
     return made
+
+
+def _n_reaching(stage: str, counts: Mapping[str, StageCount], n_shapes: int) -> int:
+    """How many shapes come to a stage in the end: those that no stage before it has given up."""
+    begins_with = n_shapes
+    before = STAGE_ORDER[: _position(stage)]
+    if stage in (EVALUATE, REFINE):  # of what is described, pictured or not
+        begins_with = counts[DESCRIBE].n_done if DESCRIBE in counts else 0
+        before = (EVALUATE,) if stage == REFINE else ()
+    return begins_with - sum(counts[each].n_failed for each in before if each in counts)
 
 
 def _freshness(catalog: Catalog, collection_id: int, score_name: str) -> list[FreshnessRow]:

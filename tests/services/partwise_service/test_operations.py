@@ -12,6 +12,7 @@ from partwise.store.records import (
     NewConfirmation,
     NewFailure,
     NewRevision,
+    NewShape,
     Progress,
     RevisionKind,
     Role,
@@ -74,6 +75,14 @@ def test_stages_say_how_long_they_take_yet(workspace, mugs, ops) -> None:
     assert (stages["remesh"]["remaining"], stages["remesh"]["eta_s"]) == (2, None)
     assert (stages["refine"]["done"], stages["refine"]["remaining"]) == (0, 3)
     assert stages["refine"]["eta_s"] == pytest.approx(3 / 0.2 * 60)
+
+
+def test_what_a_stage_gave_up_waits_for_none_after_it(workspace, mugs, ops) -> None:
+    new = [NewShape("broken.off", "0" * 64, ".off"), NewShape("waits.off", "1" * 64, ".off")]
+    broken, _ = workspace.catalog.add_shapes(mugs.collection_id, new)
+    workspace.catalog.record_failure(NewFailure(broken.shape_id, "mesh", "k9", "why"))
+    waiting = {stage["stage"]: stage["remaining"] for stage in ops()["stages"]}
+    assert waiting == {"mesh": 1, "describe": 1, "evaluate": 0, "refine": 0}
 
 
 def test_leases_are_counted(annotator, workspace, mugs, ops) -> None:
