@@ -1,5 +1,5 @@
 import { useMemo } from "react";
-import { count, percent, short } from "../../../components/numbers";
+import { count, short, whole } from "../../../components/numbers";
 import { useObservableOr } from "../../../drafts/useObservable";
 import { partShares } from "../../../labels/partShares";
 import { keyOfPart, type Part, UNLABELLED_NAME } from "../parts";
@@ -47,8 +47,8 @@ export function PartsList({ parts, part, open, onPick }: PartsListProps) {
             />
             <span className={styles.swatch} style={{ background: colour }} />
             <span className={styles.name}>{name}</span>
-            <span className={styles.faces}>{open === null ? "" : short(share.nFaces)}</span>
-            <span className={styles.share}>{open === null ? "" : percent(share.area)}</span>
+            <span className={styles.faces}>{open === null ? "" : facesInShort(share.nFaces)}</span>
+            <span className={styles.share}>{open === null ? "" : `${(100 * share.area).toFixed(1)}%`}</span>
             <span className={styles.key} aria-hidden="true">
               {keys !== null && <kbd>{keys}</kbd>}
             </span>
@@ -62,4 +62,9 @@ export function PartsList({ parts, part, open, onPick }: PartsListProps) {
 
 function titleOf(name: string, gloss: string, nFaces: number): string {
   return [name, gloss, count(nFaces, "face")].filter((each) => each !== "").join("\n");
+}
+
+/** In a narrow column; the title has the whole number. */
+function facesInShort(nFaces: number): string {
+  return nFaces < 10_000 ? whole(nFaces) : short(nFaces);
 }
