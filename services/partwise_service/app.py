@@ -17,6 +17,7 @@ from partwise_service.compression import CompressionMiddleware
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
+from partwise_service.ownership import draft_owners
 from partwise_service.page import install_page
 from partwise_service.problems import install_problems
 from partwise_service.remembered import Remembered
@@ -100,7 +101,10 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
             await resources.enter_async_context(hub.running())
             ops = Remembered[OpsOut](OPS_S, clock)
             recent = RecentlyGood(clock)
-            app.state.service = Service(settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, clock)
+            owner = draft_owners(workspace.catalog)
+            app.state.service = Service(
+                settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, owner, clock
+            )
             yield
 
     app = FastAPI(

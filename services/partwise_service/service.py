@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from partwise.workspace.workspace import Workspace
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
+from partwise_service.ownership import Owner
 from partwise_service.remembered import Remembered
 from partwise_service.schemas.operations import OpsOut
 from partwise_service.security.rate_limit import FailureLimiter
@@ -18,7 +19,7 @@ from partwise_service.tool_pool import ToolPool
 class Service:
     """limiter : of failures to log in, by address and by a secret's beginning. recent : secrets good lately.
 
-    clock : seconds, monotone.
+    draft_owner : whose a draft is. clock : seconds, monotone.
     """
 
     settings: ServiceSettings
@@ -29,4 +30,5 @@ class Service:
     tools: ToolPool
     ops: Remembered[OpsOut]
     events: EventHub
+    draft_owner: Callable[[int], Owner]
     clock: Callable[[], float]

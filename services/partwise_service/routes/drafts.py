@@ -14,7 +14,7 @@ from partwise.workspace.confirming import begin_draft, confirm, draft_work
 from partwise.workspace.labelling import keep_mesh
 from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
-from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, WorkspaceDep
+from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, ServiceDep, WorkspaceDep
 from partwise_service.held_leases import visible_lease
 from partwise_service.ownership import visible_row
 from partwise_service.problems import ProblemError, ProblemKind
@@ -112,17 +112,18 @@ def get_draft_labels(request: Request, caller: Annotator, workspace: WorkspaceDe
 
 @router.post("/drafts/{draft_id}/strokes")
 def append_strokes(
-    caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId, sent: Strokes
+    caller: Annotator, service: ServiceDep, response: Response, draft_id: RowId, sent: Strokes
 ) -> DraftOut:
     """Commit strokes. Safe to send again: those on record are passed over. The answer comes after the commit.
 
     409 if the draft went on elsewhere: the problem's `state` is the draft's, `recorded` the log from the expected
     sequence on, and `refused` what was sent, so that the client has both sides.
     """
-    draft = visible_draft(catalog, caller, draft_id)
+    visible_row(caller, lambda: service.draft_owner(draft_id), _missing(draft_id))
+    catalog = service.workspace.catalog
     strokes = [stroke_from_document(document) for document in sent.strokes]
     try:
-        return _tagged(response, catalog.append_strokes(draft.id, caller.person_id, sent.expected_sequence, strokes))
+        return _tagged(response, catalog.append_strokes(draft_id, caller.person_id, sent.expected_sequence, strokes))
     except StaleDraftError as error:
         raise _both_sides(catalog, error, sent.expected_sequence, {"refused": sent.strokes}) from error
 
@@ -167,7 +168,11 @@ def visible_draft(catalog: Catalog, caller: Identity, draft_id: int) -> Draft:
     ------
     NotFoundError : it is not there, or not for them.
     """
-    return visible_row(caller, lambda: catalog.draft(draft_id), f"there is no draft {draft_id} of yours; see /drafts")
+    return visible_row(caller, lambda: catalog.draft(draft_id), _missing(draft_id))
+
+
+def _missing(draft_id: int) -> str:
+    return f"there is no draft {draft_id} of yours; see /drafts"
 
 
 def _tagged(response: Response, draft: Draft) -> DraftOut:

@@ -127,12 +127,12 @@ def writing(engine: Engine) -> Iterator[Connection]:
 @contextmanager
 def _in_one_line(engine: Engine) -> Iterator[None]:
     """Turn the driver's errors into the project's, with a remedy."""
-    where = engine.url.render_as_string(hide_password=True)
     try:
         yield
     except IntegrityError as error:
         raise ConflictError(f"the catalog must stay consistent and refused a change: {_reason(error)}") from error
     except DBAPIError as error:
+        where = engine.url.render_as_string(hide_password=True)
         raise StoreError(f"the catalog at {where} {_complaint(_reason(error))}") from error
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, insert, select, update
+from sqlalchemy import Connection, Row, Update, bindparam, exists, insert, select, update
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError, StaleDraftError
 from partwise.labels.annotation_cost import AnnotationCost
@@ -16,6 +16,8 @@ from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Draft, DraftOutcome, LeasePurpose, NewDraft, StoredStroke
 from partwise.store.sql import leases
 from partwise.store.sql.dialect import batches
+
+_FOLLOWING = 1_000  # strokes; more at once are rare
 
 
 def open_draft(connection: Connection, lease_id: int, person_id: int, new: NewDraft, now: datetime) -> Draft:
@@ -66,12 +68,11 @@ def _refuse_foreign_base(connection: Connection, shape_id: int, new: NewDraft) -
 
 
 def draft(connection: Connection, draft_id: int) -> Draft:
-    return _found(connection.execute(select(t.draft).where(t.draft.c.id == draft_id)).first(), draft_id)
+    return _found(connection.execute(_DRAFT, {"of_draft": draft_id}).first(), draft_id)
 
 
 def open_drafts(connection: Connection, person_id: int) -> list[Draft]:
-    query = select(t.draft).where(t.draft.c.person_id == person_id, t.draft.c.closed_at.is_(None))
-    return [to_draft(row) for row in connection.execute(query.order_by(t.draft.c.id))]
+    return [to_draft(row) for row in connection.execute(_OPEN_DRAFTS, {"of_person": person_id})]
 
 
 def drafts_of_shape(connection: Connection, shape_id: int) -> list[Draft]:
@@ -88,6 +89,9 @@ def append_strokes(
     now: datetime,
 ) -> Draft:
     _refuse_misnumbered(person_id, expected_sequence, strokes)
+    followed_on = _follow_on(connection, draft_id, person_id, expected_sequence, strokes, now)
+    if followed_on is not None:
+        return followed_on
     known = locked_draft(connection, draft_id, person_id)
     refuse_closed(known)
     new = _unknown(connection, known, strokes)
@@ -109,6 +113,44 @@ def append_strokes(
                 f"strokes of draft {draft_id} must be based on revision {known.base_revision} but one is on "
                 f"{stroke.base_revision}; open the draft again",
             )
+    _insert_strokes(connection, draft_id, new, now)
+    values = {"n_strokes": known.n_strokes + len(new), "updated_at": now}
+    statement = update(t.draft).where(t.draft.c.id == draft_id).values(values).returning(t.draft)
+    return to_draft(connection.execute(statement).one())
+
+
+def _follow_on(
+    connection: Connection,
+    draft_id: int,
+    person_id: int,
+    expected_sequence: int,
+    strokes: Sequence[Stroke],
+    now: datetime,
+) -> Draft | None:
+    """Appends strokes that are all new and just what comes next, as nearly all are: two statements in all.
+
+    None, with nothing changed, for any others: what is to be said of those takes a closer look.
+    """
+    bases = {stroke.base_revision for stroke in strokes}
+    if len(bases) != 1 or len(strokes) > _FOLLOWING:
+        return None
+    expected = {
+        "of_draft": draft_id,
+        "of_person": person_id,
+        "on_record": expected_sequence,
+        "on_base": bases.pop(),
+        "ids": [str(stroke.id) for stroke in strokes],
+        "now_on_record": expected_sequence + len(strokes),
+        "now": now,
+    }
+    row = connection.execute(_FOLLOW_ON, expected).first()
+    if row is None:
+        return None
+    _insert_strokes(connection, draft_id, strokes, now)
+    return to_draft(row)
+
+
+def _insert_strokes(connection: Connection, draft_id: int, strokes: Sequence[Stroke], now: datetime) -> None:
     rows = [
         {
             "draft_id": draft_id,
@@ -117,12 +159,9 @@ def append_strokes(
             "payload": stroke_to_document(stroke),
             "recorded_at": now,
         }
-        for stroke in new
+        for stroke in strokes
     ]
     connection.execute(insert(t.stroke), rows)
-    values = {"n_strokes": known.n_strokes + len(new), "updated_at": now}
-    statement = update(t.draft).where(t.draft.c.id == draft_id).values(values).returning(t.draft)
-    return to_draft(connection.execute(statement).one())
 
 
 def _refuse_misnumbered(person_id: int, expected_sequence: int, strokes: Sequence[Stroke]) -> None:
@@ -256,3 +295,30 @@ def _found(row: Row[Any] | None, draft_id: int) -> Draft:
 def to_draft(row: Row[Any]) -> Draft:
     outcome = None if row.outcome is None else DraftOutcome(row.outcome)
     return Draft(**{**row._mapping, "purpose": LeasePurpose(row.purpose), "outcome": outcome})
+
+
+def _following() -> Update:
+    """Counts strokes that are new and just what comes next into their draft; returns nothing if they are not that."""
+    draft, stroke = t.draft.c, t.stroke.c
+    is_any_known = exists().where(
+        stroke.draft_id == bindparam("of_draft"), stroke.id.in_(bindparam("ids", expanding=True))
+    )
+    return (
+        update(t.draft)
+        .where(draft.id == bindparam("of_draft"), draft.person_id == bindparam("of_person"))
+        .where(draft.closed_at.is_(None), draft.n_strokes == bindparam("on_record"))
+        .where(draft.base_revision.is_not_distinct_from(bindparam("on_base", type_=draft.base_revision.type)))
+        .where(~is_any_known)
+        .values(n_strokes=bindparam("now_on_record"), updated_at=bindparam("now"))
+        .returning(t.draft)
+    )
+
+
+# Built once, as people at work ask them all the time and building one costs as much as asking it.
+_FOLLOW_ON = _following()
+_DRAFT = select(t.draft).where(t.draft.c.id == bindparam("of_draft"))
+_OPEN_DRAFTS = (
+    select(t.draft)
+    .where(t.draft.c.person_id == bindparam("of_person"), t.draft.c.closed_at.is_(None))
+    .order_by(t.draft.c.id)
+)
