@@ -1,6 +1,6 @@
 """/collections/{collection_id}/shapes, /shapes/{shape_id}: the table, and one shape with how it came to be."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated
 
@@ -8,7 +8,16 @@ from fastapi import APIRouter, Depends, Query
 from pydantic import Field
 
 from partwise.store.catalog import SHOWN_KINDS, Catalog
-from partwise.store.records import ANY_STAGE, BY_NAME, ListedShape, Role, ShapeFilter, ShapeOrder, ShapeState
+from partwise.store.records import (
+    ANY_STAGE,
+    BY_NAME,
+    ListedShape,
+    Role,
+    ShapeFilter,
+    ShapeOrder,
+    ShapeState,
+    ShapeTile,
+)
 from partwise.workspace.provenance import FailureCard, ProvenanceCard, provenance
 from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep, shapes_of
@@ -26,6 +35,7 @@ from partwise_service.schemas.shapes import (
     ShapeRow,
     ShapeRows,
 )
+from partwise_service.security.identity import Identity
 
 MAX_PAGE = 500
 NO_ORDER = "none"
@@ -64,6 +74,7 @@ Order = Annotated[ShapeOrder, Depends(shape_order)]
 
 @router.get("/collections/{collection_id}/shapes")
 def list_shapes(
+    caller: Caller,
     collection: ScopedCollection,
     catalog: CatalogDep,
     where: Where,
@@ -76,7 +87,8 @@ def list_shapes(
     In an order by score, shapes that have no such score are left out.
     """
     rows = catalog.list_shapes(collection.id, where=where, order=order, after=anchor_of(after), limit=limit)
-    return Page(items=_with_tiles(catalog, rows), next=cursor_of(rows[-1].anchor) if len(rows) == limit else None)
+    next_after = cursor_of(rows[-1].anchor) if len(rows) == limit else None
+    return Page(items=_with_tiles(catalog, caller, rows, order), next=next_after)
 
 
 @router.get("/collections/{collection_id}/shapes/count")
@@ -87,6 +99,7 @@ def count_shapes(collection: ScopedCollection, catalog: CatalogDep, where: Where
 
 @router.get("/collections/{collection_id}/shapes/ranked")
 def jump_to_rank(
+    caller: Caller,
     collection: ScopedCollection,
     catalog: CatalogDep,
     where: Where,
@@ -106,11 +119,13 @@ def jump_to_rank(
         rows = [known[shape_id] for shape_id in ids]
     else:
         rows = catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit)
-    return RankedShapes(n_shapes=n_shapes, built_at=built_at, items=_with_tiles(catalog, rows, first_rank))
+    items = _with_tiles(catalog, caller, rows, order, first_rank)
+    return RankedShapes(n_shapes=n_shapes, built_at=built_at, items=items)
 
 
 @router.get("/collections/{collection_id}/shapes/rows")
 def list_rows(
+    caller: Caller,
     collection: ScopedCollection,
     catalog: CatalogDep,
     order: Order,
@@ -119,7 +134,7 @@ def list_rows(
     """These shapes, in the order in which they are named, such as those picked on the map."""
     named = [shape.id for shape in shapes_of(catalog, collection, ids)]
     rows = catalog.listed_shapes(named, order.score_name if order.score_name != BY_NAME else None)
-    return ShapeRows(items=_with_tiles(catalog, [rows[shape_id] for shape_id in named]))
+    return ShapeRows(items=_with_tiles(catalog, caller, [rows[shape_id] for shape_id in named], order))
 
 
 @router.get("/collections/{collection_id}/orders")
@@ -162,11 +177,37 @@ def _without_logs(card: ProvenanceCard) -> ProvenanceCard:
     return replace(card, stages=tuple(replace(stage, failure=without_log(stage.failure)) for stage in card.stages))
 
 
-def _with_tiles(catalog: Catalog, rows: Sequence[ListedShape], first_rank: int | None = None) -> list[ShapeRow]:
+def _with_tiles(
+    catalog: Catalog, caller: Identity, rows: Sequence[ListedShape], order: ShapeOrder, first_rank: int | None = None
+) -> list[ShapeRow]:
     tiles = catalog.shape_tiles([row.shape.id for row in rows])
     return [
         ShapeRow.of(row, tiles[row.shape.id], None if first_rank is None else first_rank + place)
-        for place, row in enumerate(rows)
+        for place, row in enumerate(_as_leased(catalog, caller, rows, tiles, order))
+    ]
+
+
+def _as_leased(
+    catalog: Catalog,
+    caller: Identity,
+    rows: Sequence[ListedShape],
+    tiles: Mapping[int, ShapeTile],
+    order: ShapeOrder,
+) -> Sequence[ListedShape]:
+    """The rows; those of shapes that the caller holds with the score that the lease tells.
+
+    Of work that is not to be recognised that is another than the shape's own: two that differ would give it away.
+    """
+    if not any(holder.person_id == caller.person_id for row in rows for holder in tiles[row.shape.id].holders):
+        return rows
+    leases = {lease.shape_id: lease for lease in catalog.leases_of(caller.person_id)}
+    return [
+        replace(row, value=lease.score, model_version=lease.model_version)
+        if (lease := leases.get(row.shape.id)) is not None
+        and row.value is not None
+        and lease.score_name == order.score_name
+        else row
+        for row in rows
     ]
 
 

@@ -43,14 +43,18 @@ def _everywhere(draft, n_faces: int, part: int):
 @pytest.fixture
 def checked(annotator, workspace, mugs, handed_in) -> int:
     """ann, unknowing, labels a.off rightly; its id."""
-    catalog, mesh = workspace.catalog, mugs.meshes["a.off"]
-    truth = catalog.add_person("truth").id
-    labels = np.ones(mesh.n_faces, dtype=np.uint16)
-    catalog.add_revision(NewRevision(mugs.ids["a.off"], mesh.content_hash(), RevisionKind.REFERENCE, truth, 1, labels))
-    catalog.update_collection_settings(mugs.collection_id, {"honeypot_share": 0.5})
+    _know(workspace.catalog, mugs)
     shape_id = handed_in("ann", 1, 0.1)
     assert shape_id == mugs.ids["a.off"]
     return shape_id
+
+
+def _know(catalog, mugs) -> None:
+    """Puts on record what is true of a.off, with which half of the claims are checked."""
+    mesh, truth = mugs.meshes["a.off"], catalog.add_person("truth").id
+    labels = np.ones(mesh.n_faces, dtype=np.uint16)
+    catalog.add_revision(NewRevision(mugs.ids["a.off"], mesh.content_hash(), RevisionKind.REFERENCE, truth, 1, labels))
+    catalog.update_collection_settings(mugs.collection_id, {"honeypot_share": 0.5})
 
 
 def test_blind_checks_are_listed(operator, collection, checked) -> None:
@@ -155,3 +159,25 @@ def test_reviews_of_one_reason(reviewer, collection, disputed) -> None:
         for reason in ("disagreement", "rework")
     }
     assert found == {"disagreement": 1, "rework": 0}
+
+
+def test_the_table_and_the_lease_tell_its_holder_the_same_score(
+    annotator, reviewer, workspace, mugs, collection
+) -> None:
+    _know(workspace.catalog, mugs)
+    workspace.catalog.update_collection_settings(mugs.collection_id, {"honeypot_share": 1.0})
+    known = mugs.ids["a.off"]
+    workspace.catalog.set_ranks(mugs.collection_id, {known: 3, mugs.ids["b.off"]: 2, mugs.ids["sub/c.off"]: 1})
+    (lease,) = annotator.post("/queue/claim", json={"collection_id": mugs.collection_id}).json()["items"]
+    assert (lease["shape_id"], lease["score_name"]) == (known, "entropy")
+
+    def scores(caller) -> set[float]:
+        """Of the shape, wherever the table tells it."""
+        order = {"order": "entropy"}
+        pages = [caller.get(f"{collection}/shapes{path}", params=order) for path in ("", "/ranked")]
+        pages.append(caller.get(f"{collection}/shapes/rows", params={"id": known, **order}))
+        return {row["score"] for page in pages for row in page.json()["items"] if row["id"] == known}
+
+    assert scores(annotator) == {lease["score"]}
+    assert scores(reviewer) == {workspace.catalog.scores([known], "entropy")[known].value}
+    assert scores(reviewer) != scores(annotator)
