@@ -75,7 +75,7 @@ async def current_identity(
 
 async def _identity(open_service: Service, credential: Credential, address: str) -> Identity:
     known = recognise(open_service, credential)
-    return known or await run_in_threadpool(authenticate, open_service, credential, address)
+    return await run_in_threadpool(authenticate, open_service, credential, address) if known is None else known
 
 
 Caller = Annotated[Identity, Depends(current_identity)]
