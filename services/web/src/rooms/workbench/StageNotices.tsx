@@ -50,7 +50,9 @@ export function StageNotices({ desk, held, open, confirming }: StageNoticesProps
           onLeave={() => void desk.release(held)}
         />
       )}
-      {open !== null && <ShapeBanners held={held} open={open} onLeave={leave} />}
+      {open !== null && (
+        <ShapeBanners {...{ held, open }} isLossTold={confirming.unseenRevision !== null} onLeave={leave} />
+      )}
     </>
   );
 }

@@ -92,8 +92,10 @@ export class Desk {
 
   /** Gives a shape back to the queue; the draft stays. */
   async release(shape: HeldShape): Promise<void> {
-    await this.parts.leases.release(shape.lease.id);
-    await this.leave(shape);
+    await this.attempt(async () => {
+      await this.parts.leases.release(shape.lease.id);
+      await this.leave(shape);
+    });
   }
 
   /** Takes a shape off the desk that is not this tab's any more, and goes on. */

@@ -18,6 +18,7 @@ export function SetAsideBar({ open }: { open: OpenShape }) {
   useEffect(() => void read(), [read, save.kind]);
   const [aside] = asides;
   if (aside === undefined || !open.canEdit) return null;
+  const them = aside.strokes.length === 1 ? "it" : "them";
   const forget = async () => {
     await outbox.forgetAside(aside.id);
     await read();
@@ -40,7 +41,7 @@ export function SetAsideBar({ open }: { open: OpenShape }) {
         </>
       }
     >
-      You made them <Time at={new Date(aside.at).toISOString()} />, and went on without them.
+      You made {them} <Time at={new Date(aside.at).toISOString()} />, and went on without {them}.
     </Notice>
   );
 }

@@ -10,11 +10,13 @@ import { SetAsideBar } from "./SetAsideBar";
 export interface ShapeBannersProps {
   held: HeldShape;
   open: OpenShape;
+  /** Another notice tells already that the shape went to somebody else. */
+  isLossTold: boolean;
   onLeave: () => void;
 }
 
 /** What the person must know about the shape in hand before they go on. */
-export function ShapeBanners({ held, open, onLeave }: ShapeBannersProps) {
+export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersProps) {
   const lease = useObservable(held.keeper.state);
   const role = useObservable(open.draft.right.role);
   const isConfirmedElsewhere = useObservable(open.draft.isConfirmedElsewhere);
@@ -29,7 +31,7 @@ export function ShapeBanners({ held, open, onLeave }: ShapeBannersProps) {
   }
   return (
     <>
-      {lease.kind === "lost" && (
+      {lease.kind === "lost" && !isLossTold && (
         <Notice kind="warning" title="This shape is not yours any more" actions={leave}>
           {sentence(lease.why)} Your strokes are kept.
         </Notice>

@@ -6,8 +6,8 @@ const queued = { nQueued: 1, isKept: true, why: "" };
 it.each([
   [{ kind: "saved" }, "Saved"],
   [{ kind: "saving", ...queued }, "Saving…"],
-  [{ kind: "offline", ...queued }, "Offline: 1 stroke queued"],
-  [{ kind: "offline", ...queued, nQueued: 12 }, "Offline: 12 strokes queued"],
+  [{ kind: "offline", ...queued }, "Offline: 1 queued"],
+  [{ kind: "offline", ...queued, nQueued: 12 }, "Offline: 12 queued"],
   [{ kind: "signed-out", ...queued }, "Log in to send 1 stroke"],
   [{ kind: "closed", ...queued }, "1 stroke not taken"],
   [{ kind: "refused", ...queued, nQueued: 2 }, "2 strokes refused"],

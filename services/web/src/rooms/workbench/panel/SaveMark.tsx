@@ -1,6 +1,6 @@
 import { Check, CloudOff, Loader, TriangleAlert } from "lucide-react";
 import { classes } from "../../../components";
-import { count } from "../../../components/numbers";
+import { count, whole } from "../../../components/numbers";
 import type { SaveState } from "../../../drafts/saveState";
 import { useObservable } from "../../../drafts/useObservable";
 import type { OpenShape } from "../shape/openShape";
@@ -16,7 +16,7 @@ export function wordsOf(state: SaveState): string {
     case "saving":
       return "Saving…";
     case "offline":
-      return `Offline: ${strokes(state.nQueued)} queued`;
+      return `Offline: ${whole(state.nQueued)} queued`;
     case "signed-out":
       return `Log in to send ${strokes(state.nQueued)}`;
     case "conflict":
