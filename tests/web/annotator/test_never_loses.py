@@ -58,7 +58,7 @@ def test_strokes_wait_while_the_network_is_cut(opened) -> None:
 
     bench.page.context.set_offline(True)
     paint(bench, 1, 2, 3)
-    expect(bench.save_state).to_have_text("Offline: 3 strokes queued")
+    expect(bench.save_state).to_have_text("Offline: 3 queued")
     expect(bench.page.get_by_role("status", name="Connection")).to_have_text("Offline")
     assert len(bench.strokes(draft_id)) == START + 1
 
@@ -73,7 +73,7 @@ def test_a_closed_tab_has_sent_its_strokes_once_it_is_opened_again(opened) -> No
     context = bench.page.context
     context.set_offline(True)
     paint(bench, 0, 2, 4)
-    expect(bench.save_state).to_have_text("Offline: 3 strokes queued")
+    expect(bench.save_state).to_have_text("Offline: 3 queued")
     bench.page.close()
 
     context.set_offline(False)
@@ -88,7 +88,7 @@ def test_strokes_of_a_shape_that_is_not_opened_again_are_sent_as_well(opened) ->
     context = bench.page.context
     context.set_offline(True)
     paint(bench, 0, 1)
-    expect(bench.save_state).to_have_text("Offline: 2 strokes queued")
+    expect(bench.save_state).to_have_text("Offline: 2 queued")
     bench.page.close()
     assert bench.post(f"/leases/{lease_id}/release")
 
@@ -109,7 +109,7 @@ def test_the_service_killed_within_a_stroke(service, opened) -> None:
     service.kill()
     bench.page.mouse.up()
     paint(bench, 3)
-    expect(bench.save_state).to_have_text("Offline: 2 strokes queued")
+    expect(bench.save_state).to_have_text("Offline: 2 queued")
     expect(bench.page.get_by_role("status", name="Connection")).to_have_text("Reconnecting")
 
     service.start()
@@ -199,7 +199,7 @@ def test_a_tab_takes_over_what_the_other_could_not_send(opened) -> None:
     second.open(shape_id)
     first.page.route("**/strokes", lambda route: route.abort())
     paint(first, 0, 1)
-    expect(first.save_state).to_have_text("Offline: 2 strokes queued")
+    expect(first.save_state).to_have_text("Offline: 2 queued")
     second.page.get_by_role("button", name="Take over here").click()
     paint(second, 2)
     expect_painted(second, draft_id, 0, 1, 2)
