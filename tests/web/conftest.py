@@ -209,12 +209,13 @@ def token_of(service: RunningService) -> Callable[[str, str], str]:
 
 @pytest.fixture
 def enter(service: RunningService, browse: Callable[..., BrowserContext]) -> Callable[..., Page]:
-    """Opens a place of the collection for a person who is new here and has logged in in a role."""
+    """Opens a place of the collection for a person, new or known, who has logged in in a role."""
 
     def go(person: str, role: str, place: str = "table", **options: Any) -> Page:
         until = datetime.now(UTC) + timedelta(hours=1)
         with open_workspace(service.workspace) as workspace:
-            person_id = workspace.catalog.add_person(person).id
+            known = {each.name: each.id for each in workspace.catalog.list_people()}
+            person_id = known.get(person) or workspace.catalog.add_person(person).id
             secret = workspace.catalog.issue_token(NewToken(person_id, Role(role), until), "test").secret
         context = browse(**options)
         assert context.request.post(f"{service.origin}/api/v1/login", data={"token": secret}).ok

@@ -22,7 +22,7 @@ export function CollectionSwitcher({ collection, room }: { collection: Collectio
   );
   return (
     <div className={styles.switcher}>
-      <Menu label="Collection" trigger={trigger} className={styles.trigger}>
+      <Menu label={`Collection: ${collection.name}`} trigger={trigger} className={styles.trigger}>
         <MenuHeading>Collections</MenuHeading>
         {(collections.data?.items ?? []).map((each) => (
           <MenuChoice
