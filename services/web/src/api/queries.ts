@@ -9,7 +9,11 @@ const MAX_RETRIES = 3;
 export function newQueryClient(): QueryClient {
   return new QueryClient({
     defaultOptions: {
+      // A browser without a network still reaches a service of its own machine; and nothing waits without a word.
+      mutations: { networkMode: "always" },
       queries: {
+        networkMode: "always",
+        refetchOnReconnect: true,
         staleTime: 30_000,
         retry: (failures, error) =>
           !(error instanceof Problem && error.status < 500) && failures < MAX_RETRIES,
