@@ -34,8 +34,9 @@ export function DataTable<Row>({
   isBusy = false,
 }: DataTableProps<Row>) {
   return (
+    // biome-ignore lint/a11y/useSemanticElements: no fieldset, and no landmark beside the panel's own
     // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reachable by keys
-    <section className={styles.scroll} aria-label={caption} tabIndex={0}>
+    <div role="group" className={styles.scroll} aria-label={caption} tabIndex={0}>
       <table className={styles.table} aria-busy={isBusy}>
         <caption className="unseen">{caption}</caption>
         <thead>
@@ -66,7 +67,7 @@ export function DataTable<Row>({
           )}
         </tbody>
       </table>
-    </section>
+    </div>
   );
 }
 

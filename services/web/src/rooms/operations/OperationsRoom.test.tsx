@@ -1,6 +1,6 @@
 // @vitest-environment jsdom
 import { QueryClientProvider } from "@tanstack/react-query";
-import { cleanup, fireEvent, render, screen, waitFor } from "@testing-library/react";
+import { cleanup, configure, fireEvent, render, screen, waitFor } from "@testing-library/react";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { Problem } from "../../api/problem";
 import { newQueryClient } from "../../api/queries";
@@ -62,6 +62,10 @@ beforeEach(() => {
     "/api/v1/people": () => EMPTY,
   };
 });
+// A busy machine needs seconds for a whole room.
+configure({ asyncUtilTimeout: 20_000 });
+vi.setConfig({ testTimeout: 60_000 });
+
 afterEach(cleanup);
 
 function show(): void {
