@@ -55,29 +55,31 @@ export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarPr
     <>
       {chosen.size > 0 && (
         <div className={styles.bar} role="toolbar" aria-label="Selected shapes">
-          <p className={styles.selected} role="status">
-            {whole(chosen.size)} selected
-            {nBeyond > 0 && (
-              <span className={styles.beyond}>
-                , the first of {whole(chosen.size + nBeyond)}; up to {whole(MAX_CHOSEN)} at a time
-              </span>
-            )}
-          </p>
-          <Button
-            size="small"
-            variant="primary"
-            icon={<PenTool />}
-            disabled={!canOpen}
-            title={canOpen ? undefined : `The workbench takes up to ${count(MAX_OPEN, "shape")}`}
-            onClick={() => onOpen([...chosen.values()])}
-          >
-            Open
-          </Button>
-          {isReviewer && button("accept", <ClipboardCheck />, "Accept…")}
-          {isReviewer && button("sendBack", <Undo2 />, "Send back…")}
-          {isReviewer && <PutFirstButton collectionId={collectionId} shapeIds={[...chosen.keys()]} />}
-          {isOperator && button("assign", <UserRoundPlus />, "Assign…")}
-          {isOperator && button("putBack", <ListRestart />, "Put back in queue…")}
+          <div className={styles.actions}>
+            <p className={styles.selected} role="status">
+              {whole(chosen.size)} selected
+              {nBeyond > 0 && (
+                <span className={styles.beyond}>
+                  , the first of {whole(chosen.size + nBeyond)}; up to {whole(MAX_CHOSEN)} at a time
+                </span>
+              )}
+            </p>
+            <Button
+              size="small"
+              variant="primary"
+              icon={<PenTool />}
+              disabled={!canOpen}
+              title={canOpen ? undefined : `The workbench takes up to ${count(MAX_OPEN, "shape")}`}
+              onClick={() => onOpen([...chosen.values()])}
+            >
+              Open
+            </Button>
+            {isReviewer && button("accept", <ClipboardCheck />, "Accept…")}
+            {isReviewer && button("sendBack", <Undo2 />, "Send back…")}
+            {isReviewer && <PutFirstButton collectionId={collectionId} shapeIds={[...chosen.keys()]} />}
+            {isOperator && button("assign", <UserRoundPlus />, "Assign…")}
+            {isOperator && button("putBack", <ListRestart />, "Put back in queue…")}
+          </div>
           <IconButton
             size="small"
             label="Select none"
