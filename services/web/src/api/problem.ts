@@ -31,7 +31,7 @@ export class Unreachable extends Error {
   override readonly name = "Unreachable";
 
   constructor(cause: unknown) {
-    super("The service cannot be reached. Your work is kept here, and sent once it is back.", { cause });
+    super("The service cannot be reached. Try again when it is back; strokes are kept, and sent by themselves.", { cause });
   }
 }
 
