@@ -76,6 +76,19 @@ describe("failures", () => {
     expect(sender.state.get()).toMatchObject({ kind: "offline", nQueued: 1, isKept: true });
   });
 
+  it("calls a stroke queued only once it outlives the tab", async () => {
+    const sender = await opened();
+    service.faults = ["cut"];
+    sender.append(stroke(0));
+    await settled();
+    sender.append(stroke(1));
+    expect(sender.state.get().kind).toBe("saving");
+    service.faults = ["cut"];
+    await settled();
+    expect(sender.state.get()).toMatchObject({ kind: "offline", nQueued: 2 });
+    expect(ids(await kept())).toEqual(["stroke 0", "stroke 1"]);
+  });
+
   it("waits longer from try to try", async () => {
     const sender = await opened();
     service.faults = Array<Fault>(100).fill("cut");

@@ -319,7 +319,8 @@ export class StrokeSender {
     if (this.divergence !== null) return { ...queued, kind: "conflict", divergence: this.divergence };
     if (this.blocked !== null) return { ...queued, ...this.blocked };
     if (nQueued === 0) return { kind: "saved" };
-    if (this.offline !== null) return { ...queued, kind: "offline", why: this.offline };
+    const isStored = this.storing.size === 0; // until then a closed tab would lose a stroke
+    if (this.offline !== null && isStored) return { ...queued, kind: "offline", why: this.offline };
     return { ...queued, kind: "saving" };
   }
 }
