@@ -31,7 +31,10 @@ export class Unreachable extends Error {
   override readonly name = "Unreachable";
 
   constructor(cause: unknown) {
-    super("The service cannot be reached. Try again when it is back; strokes are kept, and sent by themselves.", { cause });
+    super(
+      "The service cannot be reached. Try again when it is back; strokes are kept, and sent by themselves.",
+      { cause },
+    );
   }
 }
 
