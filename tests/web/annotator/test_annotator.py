@@ -11,7 +11,7 @@ SEAT, BACK = (0.44, 0.42), (0.5, 0.2)
 """Places on a chair that was just opened, as shares of the view."""
 START = 1
 """Strokes of a draft before its person does anything: the labels that it starts from."""
-TRAINING_MS = 120_000
+TRAINING_MS = 240_000
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +72,7 @@ def refine_boundaries(bench) -> None:
     assert bench.shown()["Unlabelled"] == 0  # boundary refinement fills what is grey
 
 
+@pytest.mark.timeout(600)
 def test_from_logging_in_to_another_model(chairs, serve, browse, bench_in) -> None:
     with open_workspace(chairs) as workspace:
         workspace.catalog.update_collection_settings(1, {"train_after": 1})
