@@ -56,14 +56,14 @@ OrderName = Annotated[
 ]
 
 
-def shape_filter(
+async def shape_filter(
     state: ShapeState | None = None, part: Id = None, cluster: Id = None, author: Id = None, failure: StageName = None
 ) -> ShapeFilter:
     """What shapes must meet, all of it."""
     return ShapeFilter(state, part, cluster, author, failure)
 
 
-def shape_order(order: OrderName = NO_ORDER, direction: DirectionName = DirectionName.ASC) -> ShapeOrder:
+async def shape_order(order: OrderName = NO_ORDER, direction: DirectionName = DirectionName.ASC) -> ShapeOrder:
     """The order that the table is in."""
     return ShapeOrder(None if order == NO_ORDER else order, direction is DirectionName.DESC)
 
@@ -108,16 +108,16 @@ def jump_to_rank(
     limit: Limit = 100,
 ) -> RankedShapes:
     """Shapes from a rank on, under the same filters and in the same orders as the list: for scrollbars."""
-    n_shapes, built_at = catalog.count_shapes(collection.id, where=where, order=order), None
-    has_score = order.score_name not in (None, BY_NAME)
-    made = catalog.ordering(collection.id, order.score_name) if has_score and where == ShapeFilter() else None
+    score_name = None if order.score_name == BY_NAME else order.score_name
+    made = catalog.ordering(collection.id, order.score_name) if where == ShapeFilter() else None
     rows: Sequence[ListedShape]
-    if made is not None and n_shapes > LIVE_UP_TO:
+    if made is not None and made.n_shapes > LIVE_UP_TO:
         n_shapes, built_at = made.n_shapes, made.built_at
         ids = catalog.ordered_shapes(made.id, first_rank, limit, descending=order.descending)
-        known = catalog.listed_shapes(ids, order.score_name)
+        known = catalog.listed_shapes(ids, score_name)
         rows = [known[shape_id] for shape_id in ids]
     else:
+        n_shapes, built_at = catalog.count_shapes(collection.id, where=where, order=order), None
         rows = catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit)
     items = _with_tiles(catalog, caller, rows, order, first_rank)
     return RankedShapes(n_shapes=n_shapes, built_at=built_at, items=items)

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import Collection, Ordering
+from partwise.store.records import BY_NAME, Collection, Ordering
 from partwise.workspace.choices import ScoreName
 from partwise.workspace.shapes import PAGE
 from partwise.workspace.workspace import Workspace
@@ -89,7 +89,7 @@ def refill_queue(workspace: Workspace, collection: Collection) -> None:
 
 
 def materialise_ordering(workspace: Workspace, collection: Collection, score_name: str | None = None) -> Ordering:
-    """A new ordering to jump in, by a score or by id; the one it replaces is forgotten."""
+    """A new ordering to jump in, by a score, by name or by id; the one it replaces is forgotten."""
     ordering = workspace.catalog.begin_ordering(collection.id, score_name)
     while workspace.catalog.extend_ordering(ordering.id):
         pass
@@ -100,9 +100,9 @@ def materialise_ordering(workspace: Workspace, collection: Collection, score_nam
 
 
 def make_orderings(workspace: Workspace, collection: Collection) -> None:
-    """Makes the orders anew in which one jumps about the table of shapes: by id, and by each score there is."""
+    """Makes the orders anew in which one jumps about the table of shapes: by id, name and each score there is."""
     has_scores = workspace.catalog.latest_model(collection.id) is not None
-    for score in (None, *(ScoreName if has_scores else ())):
+    for score in (None, BY_NAME, *(ScoreName if has_scores else ())):
         materialise_ordering(workspace, collection, score)
 
 

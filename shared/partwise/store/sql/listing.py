@@ -40,8 +40,8 @@ _FEW = 1_000
 walking along the order's index, which says of every shape whether it is one.
 """
 
-
 _NO_ID = 0
+_OF_SHAPE = tuple(column.name for column in t.shape.c)
 
 
 def list_shapes(
@@ -78,8 +78,8 @@ def _in_order(connection: Connection, shape_ids: Sequence[int], order: ShapeOrde
     if not shape_ids:
         return []
     is_by_score = order.score_name not in (None, BY_NAME)
-    query = _rows(order.score_name if is_by_score else None).where(t.shape.c.id.in_(shape_ids))
-    rows = {row.id: _listed(row) for row in connection.execute(query)}
+    asked = {"ids": shape_ids, "of_name": order.score_name}
+    rows = {row.id: _listed(row) for row in connection.execute(_SCORED if is_by_score else _LISTED, asked)}
     return [rows[shape_id] for shape_id in shape_ids]
 
 
@@ -89,8 +89,12 @@ def _matches_if_few(
     """Ids of all that meet the filter; None if they are many, nothing is filtered, or an index has them in order."""
     if where == ShapeFilter() or order.score_name is None:
         return None
-    facet = t.shape_facet
-    query = _of_part(select(facet.c.shape_id), where).where(*_conditions(facet, collection_id, where))
+    if where == ShapeFilter(part_id=where.part_id):  # all of that is in the part's own index
+        part = t.head_part.c
+        query = select(part.shape_id).where(part.collection_id == collection_id, part.part_id == where.part_id)
+    else:
+        facet = t.shape_facet
+        query = _of_part(select(facet.c.shape_id), where).where(*_conditions(facet, collection_id, where))
     found = connection.execute(query.limit(_FEW + 1)).scalars().all()
     return None if len(found) > _FEW else found
 
@@ -130,24 +134,29 @@ def _of_part(query: Select[Any], where: ShapeFilter) -> Select[Any]:
     return query.join(t.head_part, is_same).where(part.part_id == where.part_id)
 
 
-def _rows(score_name: str | None) -> Select[Any]:
-    """Rows of the table: with a score, of shapes that have it."""
+def _rows(*, with_score: bool) -> Select[Any]:
+    """Rows of the table, of shapes among `ids`: with the score `of_name`, of those that have it."""
     facet = t.shape_facet
     columns = (t.shape, facet.c.state, facet.c.author_id, facet.c.cluster, facet.c.failed_stage)
-    if score_name is None:
-        return select(*columns).join_from(facet, t.shape, t.shape.c.id == facet.c.shape_id)
+    if not with_score:
+        query = select(*columns).join_from(facet, t.shape, t.shape.c.id == facet.c.shape_id)
+        return query.where(facet.c.shape_id.in_(bindparam("ids", expanding=True)))
     return (
         select(*columns, t.score.c.value, t.model.c.version)
         .join_from(t.score, facet, facet.c.shape_id == t.score.c.shape_id)
         .join(t.shape, t.shape.c.id == t.score.c.shape_id)
         .join(t.model, t.model.c.id == t.score.c.model_id)
-        .where(t.score.c.name == score_name)
+        .where(t.score.c.shape_id.in_(bindparam("ids", expanding=True)), t.score.c.name == bindparam("of_name"))
     )
+
+
+_LISTED, _SCORED = _rows(with_score=False), _rows(with_score=True)
+"""Built once: every page of the table, and everybody's look at what they hold, asks one of them."""
 
 
 def _listed(row: Row[Any]) -> ListedShape:
     values = row._mapping
-    shape = Shape(**{column.name: values[column] for column in t.shape.c})
+    shape = Shape(**{name: getattr(row, name) for name in _OF_SHAPE})
     return ListedShape(
         shape,
         ShapeState(row.state),
@@ -162,10 +171,10 @@ def _listed(row: Row[Any]) -> ListedShape:
 def listed_shapes(connection: Connection, shape_ids: Sequence[int], score_name: str | None) -> dict[int, ListedShape]:
     found = {}
     for some in batches(shape_ids):
-        rows = connection.execute(_rows(None).where(t.shape_facet.c.shape_id.in_(some)))
+        rows = connection.execute(_LISTED, {"ids": some})
         found.update({row.id: _listed(row) for row in rows})
         if score_name is not None:
-            scored = connection.execute(_rows(score_name).where(t.score.c.shape_id.in_(some)))
+            scored = connection.execute(_SCORED, {"ids": some, "of_name": score_name})
             found.update({row.id: _listed(row) for row in scored})
     return found
 
