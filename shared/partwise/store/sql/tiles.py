@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from sqlalchemy import Connection, Row, Select, bindparam, select
+from sqlalchemy import BindParameter, Connection, Row, Select, bindparam, select
 
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
@@ -13,7 +13,7 @@ from partwise.store.sql.state import is_current_run
 
 _PREDICTED, _REFINED = "evaluate", "refine"
 """The stages that leave predicted and refined labels behind."""
-_IDS = bindparam("ids", expanding=True)
+_IDS: BindParameter[int] = bindparam("ids", expanding=True)
 
 
 def shape_tiles(connection: Connection, shape_ids: Sequence[int]) -> dict[int, ShapeTile]:
