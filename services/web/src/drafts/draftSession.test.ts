@@ -200,3 +200,22 @@ describe("confirming", () => {
     expect(await session.confirm("sum")).toEqual({ kind: "refused", why: "part 4 has gone" });
   });
 });
+
+describe("a lease that had to be claimed again", () => {
+  it("goes on with the same draft", async () => {
+    const { session } = await tab();
+    session.keeper.onReclaimed({ ...session.keeper.lease, id: 2 });
+    await settled();
+    expect(session.isConfirmedElsewhere.get()).toBe(false);
+  });
+
+  it("tells if the draft was confirmed on another computer", async () => {
+    const other = { ...service.record, id: service.record.id + 1 };
+    let opened = service.record;
+    const { session } = await tab({ ...parts, openDraft: async () => opened });
+    opened = other;
+    session.keeper.onReclaimed({ ...session.keeper.lease, id: 2 });
+    await settled();
+    expect(session.isConfirmedElsewhere.get()).toBe(true);
+  });
+});

@@ -28,7 +28,7 @@ export interface SessionListener {
 export class DraftSession<L extends LeaseRecord = LeaseRecord> {
   readonly sender: StrokeSender;
   readonly right: EditingRight;
-  /** Another tab confirmed this draft. */
+  /** Another tab, or another computer, confirmed this draft. */
   readonly isConfirmedElsewhere = new Observable(false);
   listener: SessionListener | null = null;
 
@@ -46,7 +46,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
     };
     this.right.onMessage = (message) => this.receive(message);
     this.right.beforeHandOver = () => this.sender.pause();
-    keeper.onReclaimed = (lease) => void this.parts.openDraft(lease.id, draft.base_revision).catch(() => {});
+    keeper.onReclaimed = (lease) => void this.reopen(lease.id);
   }
 
   /** The draft of the keeper's lease with all its strokes. It edits, or watches where another tab edits. */
@@ -109,6 +109,12 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
     this.keeper.stop();
     await this.sender.pause();
     this.right.close();
+  }
+
+  /** Goes on with the draft under a new lease. Another one has taken its place if it was confirmed elsewhere meanwhile. */
+  private async reopen(leaseId: number): Promise<void> {
+    const now = await this.parts.openDraft(leaseId, this.draft.base_revision).catch(() => this.draft);
+    if (now.id !== this.draft.id) this.isConfirmedElsewhere.set(true);
   }
 
   private async takeUp(): Promise<void> {

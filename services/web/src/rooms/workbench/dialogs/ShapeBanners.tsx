@@ -24,7 +24,7 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
   const leave = <Button onClick={onLeave}>Go to the next shape</Button>;
   if (isConfirmedElsewhere) {
     return (
-      <Notice title="You confirmed this shape in another tab" actions={leave}>
+      <Notice title="You confirmed this shape elsewhere" actions={leave}>
         There is nothing left to do here.
       </Notice>
     );
