@@ -186,9 +186,9 @@ def _beside(template: Mugs, path: Path) -> Mugs:
 
 
 @pytest.fixture
-def settings(mugs: Mugs) -> ServiceSettings:
-    """A test that needs other settings overrides this."""
-    return ServiceSettings(workspace=mugs.path)
+def settings(mugs: Mugs, tmp_path: Path) -> ServiceSettings:
+    """Without a page, whether one is built or not. A test that needs other settings overrides this."""
+    return ServiceSettings(workspace=mugs.path, page_folder=tmp_path / "no-page")
 
 
 @pytest.fixture

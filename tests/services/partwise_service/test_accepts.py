@@ -37,8 +37,9 @@ def label_next(mugs):
         lease = caller.post("/queue/claim", json={"collection_id": mugs.collection_id}).json()["items"][0]
         draft = caller.post(f"/leases/{lease['id']}/draft", json={"base_revision": None}).json()
         stroke = {
-            "v": 1, "kind": "assign", "runs": [[0, n_faces[draft["shape_id"]]]], "label": part, "id": str(uuid4()), "sequence": 0,
-            "base_revision": None, "author_id": lease["person_id"], "at": "2026-11-22T12:00:00Z",
+            "v": 1, "kind": "assign", "runs": [[0, n_faces[draft["shape_id"]]]], "label": part,
+            "id": str(uuid4()), "sequence": 0, "base_revision": None,
+            "author_id": lease["person_id"], "at": "2026-11-22T12:00:00Z",
         }  # fmt: skip
         sent = caller.post(f"/drafts/{draft['id']}/strokes", json={"expected_sequence": 0, "strokes": [stroke]})
         assert sent.status_code == 200, sent.text
