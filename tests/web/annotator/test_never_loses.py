@@ -257,6 +257,7 @@ def test_a_stale_save_is_refused_and_put_on_top(two_versions) -> None:
     assert away.shown() == mine  # the same spot
     away.page.keyboard.press("Enter")
     away.until(lambda: away.get(f"/drafts/{draft_id}")["outcome"] == "confirmed")
+    expect(home.page.get_by_text("You confirmed this shape elsewhere")).to_be_visible()
 
 
 def test_labels_that_somebody_else_confirmed_meanwhile_are_looked_at_first(opened, log_in) -> None:
