@@ -18,7 +18,7 @@ _REACH = 0.16  # of the view: the drag stays about the middle, where the shape i
 _N_CHANGES = 40
 _NUDGE_MS = 30  # between two changes: no frame has two
 
-_READY = '!document.querySelector(\'[aria-label="Loading the surface"], [aria-label="Loading labels"]\')'
+_READY = "document.querySelector('[aria-label=\"Save state\"]') !== null"  # there are labels, which may be changed
 _VIEW = "document.querySelector('section[aria-label=Shape]').getBoundingClientRect().toJSON()"
 # Each change is one key, as people press it; it is over when the frame that shows it is drawn.
 _CHANGE = """
