@@ -33,9 +33,9 @@ class Bench:
     def shape_name(self) -> str:
         return self.page.get_by_label("Shape in hand").get_by_role("heading", level=2).inner_text()
 
-    def until(self, look: Callable[[], Any]) -> Any:
+    def until(self, look: Callable[[], Any], patience_s: float = PATIENCE_S) -> Any:
         """What `look` returns once it is true of anything; the page goes on meanwhile."""
-        deadline = monotonic() + PATIENCE_S
+        deadline = monotonic() + patience_s
         while not (found := look()):
             assert monotonic() < deadline, "what is waited for does not come"
             self.page.wait_for_timeout(50)
