@@ -11,7 +11,8 @@ import { reviewsQuery } from "./reviewRequests";
 export function OpenReviews({ collectionId }: { collectionId: number }) {
   const query = useInfiniteQuery(reviewsQuery(collectionId));
   const [place, setPlace] = useState(0);
-  const items = query.data?.pages.flatMap((page) => page.items) ?? [];
+  const open = query.data?.pages.flatMap((page) => page.items) ?? [];
+  const items = open.filter(({ review }) => review.reason !== "rework"); // those wait for an annotator
   const at = Math.min(place, Math.max(0, items.length - 1));
   const { hasNextPage, fetchNextPage } = query;
   const isNearEnd = at >= items.length - 2;

@@ -165,7 +165,9 @@ export class HeldShape {
     if (mesh_hash === null)
       throw new Error("This shape has no surface to label yet. Skip it, or tell the operator.");
     const model = new ShapeModel(await prepareMesh(await fetchMesh(mesh_hash, shape_id)), { since });
-    if (!this.isClosed) this.state.set({ step: "labels", model });
+    if (this.state.get().step === "failed")
+      model.dispose(); // labels were refused meanwhile; trying again fetches both
+    else if (!this.isClosed) this.state.set({ step: "labels", model });
     return model;
   }
 
