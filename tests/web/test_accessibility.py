@@ -1,5 +1,6 @@
 """Everybody can work here: by keys alone, with a screen reader, on a small screen, in either scheme."""
 
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -24,6 +25,8 @@ PLACES = {
     "people": "settings/people",
     "audit": "settings/audit",
 }
+UNDER_WAY = re.compile("^(Reading|Loading|Opening)")
+"""What a spinner says: it fades in, so that its contrast is low at first."""
 SCREENS = ((1280, 720), (820, 1180))
 OPERATED = {
     "button", "link", "textbox", "searchbox", "combobox", "listbox", "option", "checkbox", "radio", "switch", "slider",
@@ -63,8 +66,11 @@ def service(
 
 def _settle(page: Page) -> None:
     """Everything that was asked for is there."""
-    expect(page.get_by_role("main")).to_be_visible()
+    expect(page.get_by_role("heading", level=1)).to_be_attached()
     expect(page.locator("[aria-busy=true]")).to_have_count(0)
+    expect(page.locator("main").get_by_role("status").filter(has_text=UNDER_WAY)).to_have_count(0)
+    if "/table" in page.url:
+        expect(page.get_by_role("gridcell", name="chair").first).to_be_visible()
     if "/work" in page.url:
         expect(page.get_by_role("button", name="Confirm and next")).to_be_enabled()
 

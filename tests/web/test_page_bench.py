@@ -2,7 +2,10 @@
 
 import json
 import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
@@ -12,12 +15,19 @@ from partwise_cli.bench.page_browser import chromium
 from partwise_cli.bench.page_report import print_page
 from partwise_cli.bench.page_shape import figures
 
+T = TypeVar("T")
 SMALL = PageRequest(n_faces=2_000, n_shapes=300, repeats=1, jumps=3)
+
+
+def _apart(act: Callable[[], T]) -> T:
+    """In a thread of its own: this one may have a browser already, of which Playwright allows one a thread."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(act).result()
 
 
 def test_a_small_page_is_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     steps: list[str] = []
-    report = run_page(tmp_path / "out", SMALL, lambda what, _done, _total: steps.append(what))
+    report = _apart(lambda: run_page(tmp_path / "out", SMALL, lambda what, _done, _total: steps.append(what)))
     assert list(dict.fromkeys(steps)) == ["fill the catalog", "open and paint", "jump through the table"]
     shape, table = report.shape, report.table
     assert shape.cold.n == shape.warm.n == 1
@@ -46,8 +56,13 @@ def test_a_missing_playwright_is_told_with_its_remedy(monkeypatch: pytest.Monkey
 
 def test_a_chromium_that_does_not_start_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PARTWISE_CHROMIUM", "/nowhere/chromium")
-    with pytest.raises(StoreError, match="make web"), chromium():
-        pass
+
+    def start() -> None:
+        with chromium():
+            pass
+
+    with pytest.raises(StoreError, match="make web"):
+        _apart(start)
 
 
 def test_figures_are_samples() -> None:

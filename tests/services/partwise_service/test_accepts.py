@@ -154,7 +154,7 @@ def test_what_does_not_wait_is_not_selected(reviewer, workspace, mugs, collectio
 def test_so_many_are_selected_far_apart_on_the_map(reviewer, workspace, mugs, collection) -> None:
     ids = np.array([mugs.ids[key] for key in ("a.off", "b.off", "sub/c.off")], dtype=np.int64)
     points = np.array([[0.0, 0.0], [0.1, 0.0], [9.0, 0.0]], dtype=np.float32)
-    key = f"embeddings/{mugs.collection_id}/{'ab' * 32}.safetensors"
+    key = f"embeddings/{mugs.collection_id}/{'ef' * 32}.safetensors"
     workspace.arrays.put_bytes(key, save({"points": points, "shape_ids": ids}))
     workspace.catalog.set_embedding(mugs.collection_id, key)
     chosen = reviewer.post(f"{collection}/queue/select", json={"shape_ids": ids.tolist(), "k": 2}).json()["shape_ids"]
