@@ -9,6 +9,7 @@ import { Progress } from "./Progress";
 import { Segmented } from "./Segmented";
 import { Select } from "./Select";
 import { Slider } from "./Slider";
+import { TextArea } from "./TextArea";
 import { ToastProvider, useToast } from "./Toasts";
 
 afterEach(cleanup);
@@ -39,8 +40,8 @@ describe("controls", () => {
     expect(button.getAttribute("aria-keyshortcuts")).toBe("Control+G");
   });
 
-  it("an error is tied to its field and announced", () => {
-    render(<Input label="Name" error="Too long." />);
+  it.each([Input, TextArea])("an error is tied to its field and announced", (Control) => {
+    render(<Control label="Name" error="Too long." />);
     const input = screen.getByLabelText("Name");
     expect(input.getAttribute("aria-invalid")).toBe("true");
     expect(input.getAttribute("aria-describedby")).toBe(screen.getByRole("alert").id);

@@ -19,6 +19,7 @@ export { Select, type SelectOption, type SelectProps } from "./Select";
 export { Skeleton } from "./Skeleton";
 export { Slider, type SliderProps } from "./Slider";
 export { Spinner } from "./Spinner";
+export { TextArea, type TextAreaProps } from "./TextArea";
 export { Time, type TimeProps } from "./Time";
 export { type ShowToast, type Toast, ToastProvider, useToast } from "./Toasts";
 export { Tooltip } from "./Tooltip";

@@ -1,5 +1,5 @@
 import { type FormEvent, useEffect, useRef, useState } from "react";
-import { Button, Field, Input, Notice, Select } from "../components";
+import { Button, Input, Notice, Select, TextArea } from "../components";
 import { ColourChoice } from "./ColourChoice";
 import styles from "./Parts.module.css";
 import { draftOf, nameError, newDraft, possibleParents } from "./partDraft";
@@ -55,18 +55,14 @@ export function PartForm({ collectionId, parts, part, onClose }: PartFormProps) 
         others={new Map(others.map((each) => [each.name, each.colour]))}
         onChange={(colour) => setDraft({ ...draft, colour })}
       />
-      <Field label="Explanation" hint="What belongs to it, for those who label.">
-        {(control) => (
-          <textarea
-            {...control}
-            className={styles.note}
-            rows={2}
-            maxLength={MAX_GLOSS}
-            value={draft.gloss}
-            onChange={(event) => setDraft({ ...draft, gloss: event.target.value })}
-          />
-        )}
-      </Field>
+      <TextArea
+        label="Explanation"
+        hint="What belongs to it, for those who label."
+        rows={2}
+        maxLength={MAX_GLOSS}
+        value={draft.gloss}
+        onChange={(event) => setDraft({ ...draft, gloss: event.target.value })}
+      />
       {others.length > 0 && (
         <Select
           label="Part of"

@@ -2,7 +2,7 @@ import { Check, PenTool, Undo2 } from "lucide-react";
 import { useState } from "react";
 import { useLocation } from "wouter";
 import { roomAddress } from "../app/rooms";
-import { Button, Field, Notice, Time, useToast } from "../components";
+import { Button, Notice, TextArea, Time, useToast } from "../components";
 import { pictureOf } from "../rooms/table/rows/shapeRows";
 import { LabelsPicture } from "./LabelsPicture";
 import styles from "./Reviews.module.css";
@@ -39,20 +39,15 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
       <p>{why}</p>
       {detail && <p>{detail}</p>}
       {note !== null && (
-        <Field label="Note" hint="What is wrong, for whoever labels it next.">
-          {(control) => (
-            <textarea
-              {...control}
-              // biome-ignore lint/a11y/noAutofocus: it is what was asked for
-              autoFocus
-              className={styles.note}
-              rows={3}
-              maxLength={MAX_NOTE}
-              value={note}
-              onChange={(event) => setNote(event.target.value)}
-            />
-          )}
-        </Field>
+        <TextArea
+          label="Note"
+          hint="What is wrong, for whoever labels it next."
+          autoFocus
+          rows={3}
+          maxLength={MAX_NOTE}
+          value={note}
+          onChange={(event) => setNote(event.target.value)}
+        />
       )}
       {deciding.error && (
         <Notice kind="error" title="This could not be done">

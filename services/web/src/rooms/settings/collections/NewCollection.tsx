@@ -5,7 +5,7 @@ import { useLocation } from "wouter";
 import { api, body } from "../../../api/client";
 import { collectionsQuery } from "../../../api/queries";
 import { roomAddress } from "../../../app/rooms";
-import { Button, type ButtonVariant, Dialog, Field, Input } from "../../../components";
+import { Button, type ButtonVariant, Dialog, Input, TextArea } from "../../../components";
 import styles from "./NewCollection.module.css";
 import { partNamesOf } from "./partNames";
 
@@ -66,22 +66,15 @@ function NewCollectionDialog({ onClose }: { onClose: () => void }) {
           required
           onChange={(event) => setName(event.target.value)}
         />
-        <Field
+        <TextArea
           label="Parts"
           hint="One a line, in the order annotators see them. Colours, descriptions and more parts can be set later."
           error={creation.error?.message}
-        >
-          {(control) => (
-            <textarea
-              {...control}
-              className={styles.parts}
-              rows={6}
-              value={partText}
-              placeholder={"seat\nback\nleg"}
-              onChange={(event) => setPartText(event.target.value)}
-            />
-          )}
-        </Field>
+          rows={6}
+          value={partText}
+          placeholder={"seat\nback\nleg"}
+          onChange={(event) => setPartText(event.target.value)}
+        />
       </form>
     </Dialog>
   );

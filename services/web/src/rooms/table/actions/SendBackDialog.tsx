@@ -1,9 +1,8 @@
 import { useMutation } from "@tanstack/react-query";
 import { useState } from "react";
-import { Checkbox, Field } from "../../../components";
+import { Checkbox, TextArea } from "../../../components";
 import { count } from "../../../components/numbers";
 import { ActionDialog } from "./ActionDialog";
-import styles from "./Actions.module.css";
 import { sendBack } from "./actionRequests";
 import type { ShapeActionProps } from "./SelectionBar";
 
@@ -30,18 +29,14 @@ export function SendBackDialog({ collectionId, rows, teller, onClose }: ShapeAct
       onConfirm={() => sending.mutate()}
       onClose={onClose}
     >
-      <Field label="Note" hint="What is wrong, for whoever labels them next.">
-        {(control) => (
-          <textarea
-            {...control}
-            className={styles.note}
-            rows={4}
-            maxLength={MAX_NOTE}
-            value={note}
-            onChange={(event) => setNote(event.target.value)}
-          />
-        )}
-      </Field>
+      <TextArea
+        label="Note"
+        hint="What is wrong, for whoever labels them next."
+        rows={4}
+        maxLength={MAX_NOTE}
+        value={note}
+        onChange={(event) => setNote(event.target.value)}
+      />
       <Checkbox
         label="Only whoever labelled a shape gets it again"
         isChecked={forAuthor}

@@ -1,5 +1,5 @@
 import { type FormEvent, useState } from "react";
-import { Button, Dialog, Field } from "../../../components";
+import { Button, Dialog, TextArea } from "../../../components";
 import styles from "./SkipDialog.module.css";
 
 const REASONS = [
@@ -61,18 +61,15 @@ export function SkipDialog(props: {
             </label>
           ))}
         </fieldset>
-        <Field label="Note" hint="For whoever looks after the collection" error={error}>
-          {(control) => (
-            <textarea
-              {...control}
-              rows={2}
-              maxLength={LONGEST}
-              className={styles.note}
-              value={note}
-              onChange={(event) => setNote(event.target.value)}
-            />
-          )}
-        </Field>
+        <TextArea
+          label="Note"
+          hint="For whoever looks after the collection"
+          error={error}
+          rows={2}
+          maxLength={LONGEST}
+          value={note}
+          onChange={(event) => setNote(event.target.value)}
+        />
       </form>
     </Dialog>
   );
