@@ -6,13 +6,14 @@ not there, whatever a writer that was killed has left. Keys name when the object
 
 import hashlib
 import json
+import re
 import secrets
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
-from partwise.errors import StoreError
+from partwise.errors import NotFoundError, StoreError
 from partwise.store.array_store import ArrayStore
 
 CHUNK_BYTES = 8 << 20
@@ -104,6 +105,22 @@ def find_large_object(arrays: ArrayStore, key: str) -> LargeObject:
         return LargeObject(key, document["n_bytes"], document["n_chunks"], document["sha256"], document["about"])
     except (ValueError, KeyError, TypeError) as error:
         raise StoreError(f"{key}: an object's description must be as it was written but is damaged") from error
+
+
+def find_unexpired(arrays: ArrayStore, folder: str, name: str) -> LargeObject:
+    """The expiring object of this name directly in a folder. The name may be anything: it comes from outside.
+
+    Raises
+    ------
+    NotFoundError : it names none, or one that was never finished, has expired or is gone. StoreError : it is damaged.
+    """
+    missing = NotFoundError(f"there is no object {name[:80]!a} in {folder}, or no longer; write it anew")
+    if not re.fullmatch(EXPIRING_NAME, name):
+        raise missing
+    found = find_large_object(arrays, f"{folder}/{name}")
+    if found.expires_at <= datetime.now(UTC):
+        raise missing
+    return found
 
 
 def read_chunks(arrays: ArrayStore, found: LargeObject) -> Iterator[bytes]:

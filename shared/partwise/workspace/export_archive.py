@@ -1,6 +1,5 @@
 """An export as one zip archive in the array store, from where whoever asked for it downloads it until it expires."""
 
-import re
 import zipfile
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -8,12 +7,11 @@ from tempfile import TemporaryDirectory
 
 from partwise.errors import NotFoundError
 from partwise.store.large_objects import (
-    EXPIRING_NAME,
     LargeObject,
     LargeObjectWriter,
     delete_large_object,
     expiring_key,
-    find_large_object,
+    find_unexpired,
     sweep_expired,
 )
 from partwise.store.records import Collection, MeshRole
@@ -24,7 +22,6 @@ from partwise.workspace.workspace import Workspace
 
 EXPORTS = "exports"
 EXPORT_TTL = timedelta(days=7)
-_ID = re.compile(EXPIRING_NAME)
 
 
 def export_archive(
@@ -62,16 +59,10 @@ def find_export(workspace: Workspace, collection_id: int, export_id: str) -> Lar
     ------
     NotFoundError : it has none of this id, or no longer.
     """
-    missing = NotFoundError(f"the export is gone after {EXPORT_TTL.days} days; export again")
-    if not _ID.fullmatch(export_id):
-        raise missing
     try:
-        found = find_large_object(workspace.arrays, f"{EXPORTS}/{collection_id}/{export_id}")
+        return find_unexpired(workspace.arrays, f"{EXPORTS}/{collection_id}", export_id)
     except NotFoundError as error:
-        raise missing from error
-    if found.expires_at <= datetime.now(UTC):
-        raise missing
-    return found
+        raise NotFoundError(f"the export is gone after {EXPORT_TTL.days} days; export again") from error
 
 
 def _zip(folder: Path, writer: LargeObjectWriter) -> None:

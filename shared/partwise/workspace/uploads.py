@@ -1,6 +1,5 @@
 """Uploads: files that people send for ingest. They wait in the array store, in chunks, until they expire."""
 
-import re
 from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from pathlib import Path, PurePosixPath
@@ -9,12 +8,12 @@ from partwise.errors import ConflictError, FileFormatError, NotFoundError, Param
 from partwise.io.archives import ARCHIVE_SUFFIXES, is_archive, plain_name
 from partwise.io.read import MESH_SUFFIXES
 from partwise.store.large_objects import (
-    EXPIRING_NAME,
     LargeObject,
     LargeObjectWriter,
     delete_large_object,
     expiring_key,
     find_large_object,
+    find_unexpired,
     large_object_keys,
     read_chunks,
     sweep_expired,
@@ -22,7 +21,6 @@ from partwise.store.large_objects import (
 from partwise.workspace.workspace import Workspace
 
 UPLOADS = "uploads"
-_ID = re.compile(EXPIRING_NAME)
 
 
 class UploadWriter:
@@ -98,18 +96,12 @@ def find_upload(workspace: Workspace, collection_id: int, upload_id: str) -> Lar
     ------
     NotFoundError : it has none of this id, or no longer.
     """
-    missing = NotFoundError(
-        f"there is no upload {upload_id[:80]!a} in this collection, or no longer; send the file again"
-    )
-    if not _ID.fullmatch(upload_id):
-        raise missing
     try:
-        found = find_large_object(workspace.arrays, f"{_folder(collection_id)}/{upload_id}")
+        return find_unexpired(workspace.arrays, _folder(collection_id), upload_id)
     except NotFoundError as error:
-        raise missing from error
-    if found.expires_at <= datetime.now(UTC):
-        raise missing
-    return found
+        raise NotFoundError(
+            f"there is no upload {upload_id[:80]!a} in this collection, or no longer; send the file again"
+        ) from error
 
 
 def fetch_upload(workspace: Workspace, upload: LargeObject, folder: Path) -> Path:

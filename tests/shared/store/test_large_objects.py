@@ -13,6 +13,7 @@ from partwise.store.large_objects import (
     expiring_key,
     expiry_of,
     find_large_object,
+    find_unexpired,
     large_object_keys,
     read_chunks,
     sweep_expired,
@@ -83,6 +84,25 @@ def test_what_has_expired_is_swept_whole_or_not(store) -> None:
     assert set(large_object_keys(store, "uploads/1")) == {old, young, half}
     assert sweep_expired(store, "uploads/1", NOW) == [old, half]
     assert large_object_keys(store, "uploads/1") == [young]
+
+
+def test_what_has_not_expired_is_found_by_name(store) -> None:
+    made = written(store, expiring_key("uploads/1", datetime.now(UTC) + timedelta(hours=1)))
+    assert find_unexpired(store, "uploads/1", made.name) == made
+    with pytest.raises(NotFoundError):
+        find_unexpired(store, "uploads/2", made.name)
+
+
+def test_what_has_expired_is_not_found_even_before_it_is_swept(store) -> None:
+    made = written(store, expiring_key("uploads/1", NOW - timedelta(days=1000)))
+    with pytest.raises(NotFoundError, match="or no longer"):
+        find_unexpired(store, "uploads/1", made.name)
+
+
+def test_a_name_that_is_none_is_not_looked_for(store) -> None:
+    written(store, "uploads/1/x")
+    with pytest.raises(NotFoundError, match="no object 'x' in uploads/1"):
+        find_unexpired(store, "uploads/1", "x")
 
 
 def test_a_key_says_when_it_expires() -> None:
