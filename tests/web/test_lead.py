@@ -180,11 +180,12 @@ def test_labels_that_wait_for_a_look_are_accepted_or_sent_back(service, enter: E
     card.get_by_role("button", name="Send back").click()
     card.get_by_label("Note").fill(NOTE)
     card.get_by_role("button", name="Send back").click()
-    expect(card).to_contain_text("They were sent back; better ones are awaited.")
-    expect(card).to_contain_text(NOTE)
+    expect(lead.get_by_text("Labels sent back")).to_be_visible()
+    expect(panel).to_contain_text("Nothing waits for a look")
     assert _row(lead, recorded, accepted)["state"] == "confirmed"
     [waiting] = recorded(lead, f"{COLLECTION}/reviews")["items"]
     assert (waiting["shape_id"], waiting["reason"]) == (_row(lead, recorded, rejected)["id"], "rework")
+    assert waiting["detail"]["note"] == NOTE
 
 
 def test_filters_and_order_are_in_the_address(enter: Enter, recorded: Recorded) -> None:
