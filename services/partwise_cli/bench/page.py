@@ -42,7 +42,7 @@ class PageRequest:
 
 
 @dataclass(frozen=True, slots=True)
-class PageReport:
+class BrowserReport:
     """n_faces : that the shape has. load_average : of the machine over the last minute, before and after."""
 
     request: PageRequest
@@ -56,7 +56,7 @@ class PageReport:
     inferred: str = INFERRED
 
 
-def run_page(out: Path, request: PageRequest, on_step: OnStep) -> PageReport:
+def run_page(out: Path, request: PageRequest, on_step: OnStep) -> BrowserReport:
     """Makes a workspace in a new folder, serves it, measures its page, and leaves the report beside it as JSON.
 
     Raises
@@ -95,7 +95,7 @@ def run_page(out: Path, request: PageRequest, on_step: OnStep) -> PageReport:
             )
         version = browser.version
     load = (before, os.getloadavg()[0])
-    report = PageReport(request, workspace.n_faces, version, os.cpu_count() or 1, load, shape, table)
+    report = BrowserReport(request, workspace.n_faces, version, os.cpu_count() or 1, load, shape, table)
     write_atomically(out / REPORT, json.dumps(asdict(report), indent=2).encode())
     return report
 

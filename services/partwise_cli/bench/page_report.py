@@ -2,7 +2,7 @@
 
 import typer
 
-from partwise_cli.bench.page import PageReport
+from partwise_cli.bench.page import BrowserReport
 from partwise_cli.bench.page_shape import Figures
 from partwise_cli.terminal import counted, print_table
 
@@ -10,7 +10,7 @@ FIRST_PAINT_MS = 1_000
 BRUSH_MS = 16
 
 
-def print_page(report: PageReport) -> None:
+def print_page(report: BrowserReport) -> None:
     """The shape, then the table, then what is measured and what is inferred."""
     shape, table = report.shape, report.table
     times = [
