@@ -20,7 +20,7 @@ from partwise.store.records import (
     RevisionKind,
 )
 from partwise.store.sql_catalog import SqlCatalog
-from partwise.testing.catalog.drafts import CLOSE
+from partwise.testing.catalog.confirmations import CLOSE
 from partwise.testing.catalog.samples import blank_draft, claim, confirm, label, ready_shapes, strokes
 
 T = TypeVar("T")

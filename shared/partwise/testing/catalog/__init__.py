@@ -1,6 +1,7 @@
 """The conformance suite of `Catalog`."""
 
 from partwise.testing.catalog.collections import CollectionConformance
+from partwise.testing.catalog.confirmations import ConfirmationConformance
 from partwise.testing.catalog.drafts import DraftConformance
 from partwise.testing.catalog.figures import FigureConformance
 from partwise.testing.catalog.jobs import EventConformance, JobConformance
@@ -23,6 +24,7 @@ class CatalogConformance(
     ModelConformance,
     QueueConformance,
     DraftConformance,
+    ConfirmationConformance,
     JobConformance,
     EventConformance,
     TokenConformance,

@@ -116,6 +116,12 @@ def claim(catalog: Catalog, collection: Collection, person: Person, *, is_prefet
     return lease
 
 
+def leased_shape(catalog: Catalog) -> tuple[Collection, Lease]:
+    """The one shape of a new collection in the hands of a new person."""
+    collection, _ = ready_shapes(catalog, 1)
+    return collection, claim(catalog, collection, catalog.add_person("ann"))
+
+
 def blank_draft(catalog: Catalog, lease: Lease) -> Draft:
     """A draft of the leased shape that starts from nothing."""
     blank = labels_sha256(np.zeros(N_FACES, dtype=np.uint16))
