@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from partwise.errors import ConfigError
-from partwise_cli.arguments import CollectionOption, JsonOption, WorkspaceArgument
+from partwise_cli.arguments import (
+    CollectionOption,
+    HostOption,
+    JsonOption,
+    LoginOption,
+    PortOption,
+    PublicUrlOption,
+    WorkspaceArgument,
+)
 from partwise_cli.terminal import print_json, print_table
 
 if TYPE_CHECKING:
@@ -43,14 +51,10 @@ def register(parent: typer.Typer) -> None:
 
 def serve(
     ws: WorkspaceArgument,
-    host: Annotated[str | None, typer.Option(help="Address to listen on.", show_default="127.0.0.1")] = None,
-    port: Annotated[int | None, typer.Option(help="Port to listen on.", show_default="8000")] = None,
-    public_url: Annotated[
-        str | None, typer.Option(help="How browsers reach it, if not so.", show_default=False)
-    ] = None,
-    person: Annotated[
-        str | None, typer.Option(help="Who the printed address logs in.", show_default="who starts it")
-    ] = None,
+    host: HostOption = None,
+    port: PortOption = None,
+    public_url: PublicUrlOption = None,
+    person: LoginOption = None,
     login: Annotated[bool, typer.Option(help="Print an address that logs in.")] = True,
 ) -> None:
     """Let people work in a browser.  [dim]partwise serve ws --port 8000[/dim]"""

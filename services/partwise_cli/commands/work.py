@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from partwise.errors import ParameterError
-from partwise_cli.arguments import CollectionOption, WorkspaceArgument
+from partwise_cli.arguments import (
+    CollectionOption,
+    HostOption,
+    LoginOption,
+    PortOption,
+    PublicUrlOption,
+    WorkspaceArgument,
+)
 from partwise_cli.signals import interrupt_on_sigterm
 
 if TYPE_CHECKING:
@@ -21,14 +28,10 @@ def register(app: typer.Typer) -> None:
 
 def up(
     ws: WorkspaceArgument,
-    host: Annotated[str | None, typer.Option(help="Address to listen on.", show_default="127.0.0.1")] = None,
-    port: Annotated[int | None, typer.Option(help="Port to listen on.", show_default="8000")] = None,
-    public_url: Annotated[
-        str | None, typer.Option(help="How browsers reach it, if not so.", show_default=False)
-    ] = None,
-    person: Annotated[
-        str | None, typer.Option(help="Who the printed address logs in.", show_default="who starts it")
-    ] = None,
+    host: HostOption = None,
+    port: PortOption = None,
+    public_url: PublicUrlOption = None,
+    person: LoginOption = None,
 ) -> None:
     """Service and worker on this machine.  [dim]partwise up ws[/dim]"""
     from partwise_cli.supervisor import Command, CommandEndedError, Supervisor

@@ -21,7 +21,7 @@ class NewDraftRequest(Request):
 
 
 class Strokes(Request):
-    """Strokes as JSON objects, in order, numbered on from `expected_sequence`: see docs/strokes.md."""
+    """Strokes as JSON objects, in order, numbered on from `expected_sequence`: see docs/segmentation.md."""
 
     expected_sequence: Sequence
     strokes: Annotated[list[dict[str, JsonValue]], Field(min_length=1, max_length=MAX_STROKES)]
