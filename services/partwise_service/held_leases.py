@@ -11,16 +11,8 @@ from partwise_service.security.identity import Identity
 
 def leases_out(catalog: Catalog, leases: Sequence[Lease], caller: Identity) -> list[LeaseOut]:
     """The leases in their order, with the caller's own open drafts."""
-    rows = catalog.listed_shapes([lease.shape_id for lease in leases])
-    drafts = {draft.shape_id: draft.id for draft in catalog.open_drafts(caller.person_id)} if leases else {}
-    return [
-        LeaseOut.of(
-            lease,
-            rows[lease.shape_id],
-            drafts.get(lease.shape_id) if lease.person_id == caller.person_id else None,
-        )
-        for lease in leases
-    ]
+    found = catalog.leased_shapes([lease.id for lease in leases])
+    return [LeaseOut.of(found[lease.id], caller.person_id) for lease in leases]
 
 
 def visible_lease(catalog: Catalog, caller: Identity, lease_id: int) -> Lease:

@@ -27,8 +27,8 @@ router = APIRouter(route_class=AnswerRoute, tags=["leases"])
 @router.get("/leases")
 def list_my_leases(caller: Annotator, catalog: CatalogDep) -> LeasesOut:
     """What the caller holds, oldest first: the same after a reload. Expired ones too, unless others took them."""
-    held = [lease for lease in catalog.leases_of(caller.person_id) if caller.may_see(lease.collection_id)]
-    return LeasesOut(items=leases_out(catalog, held, caller))
+    held = [each for each in catalog.leased_by(caller.person_id) if caller.may_see(each.lease.collection_id)]
+    return LeasesOut(items=[LeaseOut.of(each, caller.person_id) for each in held])
 
 
 @router.get("/collections/{collection_id}/leases")

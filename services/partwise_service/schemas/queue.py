@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from partwise.store.records import Lease, LeaseOutcome, ListedShape, QueueDepth, ShapeState
+from partwise.store.records import LeasedShape, LeaseOutcome, QueueDepth, ShapeState
 from partwise_service.schemas.base import NO_NUL, Answer, AnyId, Request
 
 MAX_NAMED = 4
@@ -83,14 +83,14 @@ class LeaseOut(Answer):
     draft_id: int | None
 
     @classmethod
-    def of(cls, lease: Lease, row: ListedShape, draft_id: int | None) -> "LeaseOut":
-        """The lease as it is told: never what it is for."""
+    def of(cls, leased: LeasedShape, caller_id: int) -> "LeaseOut":
+        """The lease as it is told: never what it is for, and the draft to its holder only."""
         return cls(
-            **{name: getattr(lease, name) for name in _OF_LEASE},
-            source_key=row.shape.source_key,
-            state=row.state,
-            mesh_hash=row.shape.mesh_hash,
-            draft_id=draft_id,
+            **{name: getattr(leased.lease, name) for name in _OF_LEASE},
+            source_key=leased.source_key,
+            state=leased.state,
+            mesh_hash=leased.mesh_hash,
+            draft_id=leased.draft_id if leased.lease.person_id == caller_id else None,
         )
 
 

@@ -42,10 +42,14 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "claim": lambda catalog, i: catalog.claim_next(NewClaim(i, _person(catalog), 60, 0.5)),
     "claim by name": lambda catalog, i: catalog.claim_shape(1, _person(catalog), 60),
     "leases of a person": lambda catalog, i: catalog.leases_of(1),
+    "leases of a person with shapes": lambda catalog, i: catalog.leased_by(1),
+    "leases with shapes": lambda catalog, i: catalog.leased_shapes([1, 2]),
     "active leases": lambda catalog, i: catalog.active_leases(i),
     "held shapes": lambda catalog, i: catalog.held_shapes([1, 2]),
     "score that ranks": lambda catalog, i: catalog.ranking_score(i),
     "waiting shapes": lambda catalog, i: catalog.waiting_shapes(i),
+    "highest that wait": lambda catalog, i: catalog.highest_waiting(i, "entropy", 9),
+    "out of rank": lambda catalog, i: catalog.out_of_rank(i, "entropy"),
     "strokes": lambda catalog, i: catalog.strokes(1),
     "open drafts": lambda catalog, i: catalog.open_drafts(1),
     "drafts of a shape": lambda catalog, i: catalog.drafts_of_shape(1),
@@ -63,6 +67,10 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "table of a cluster": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(cluster=1)),
     "table of an author": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(author_id=1)),
     "table of a failure": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(failed_stage="mesh")),
+    "table of a name": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(name="a")),
+    "table of a name by score": lambda catalog, i: catalog.shapes_from_rank(
+        i, 7, where=ShapeFilter(name="a"), order=ShapeOrder("entropy")
+    ),
     "table of a part": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(part_id=1)),
     "table of any failure": lambda catalog, i: catalog.list_shapes(i, where=ShapeFilter(failed_stage=ANY_STAGE)),
     "table by name": lambda catalog, i: catalog.list_shapes(i, order=ShapeOrder(BY_NAME), after=ListAnchor(7)),
@@ -74,8 +82,12 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "table by score": lambda catalog, i: catalog.list_shapes(i, order=ShapeOrder("entropy")),
     "ordering": lambda catalog, i: catalog.ordering(i, "entropy"),
 }
+_INDEX_ALONE = ("table of a name", "table of a name by score")
+"""Passing over a shape whose name is another takes no look at the shape."""
 _NOT_SORTED = (
+    "table of a name",
     "queue page",
+    "highest that wait",
     "claim",
     "table",
     "table of a state",
@@ -124,6 +136,13 @@ def test_no_table_is_scanned(catalog: SqlCatalog, name: str) -> None:
 @pytest.mark.parametrize("name", _NOT_SORTED)
 def test_nothing_is_sorted(catalog: SqlCatalog, name: str) -> None:
     assert not any("TEMP B-TREE" in step for step in _plans(catalog, name))
+
+
+@pytest.mark.parametrize("name", _INDEX_ALONE)
+def test_names_are_searched_in_an_index_alone(catalog: SqlCatalog, name: str) -> None:
+    searched = [step for step in _plans(catalog, name) if "collection_id=?)" in step]
+    assert searched
+    assert all("USING COVERING INDEX" in step for step in searched)
 
 
 def test_queue_is_read_in_order_of_the_index(catalog: SqlCatalog) -> None:

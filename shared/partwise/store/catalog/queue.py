@@ -4,7 +4,7 @@ from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from partwise.store.records import Lease, NewClaim, QueueDepth
+from partwise.store.records import Lease, LeasedShape, NewClaim, QueueDepth
 
 
 class QueueCatalog(Protocol):
@@ -37,6 +37,14 @@ class QueueCatalog(Protocol):
 
     def leases_of(self, person_id: int) -> Sequence[Lease]:
         """What a person holds, oldest first: the same after a reload. Expired ones too, unless others took them."""
+        ...
+
+    def leased_by(self, person_id: int) -> Sequence[LeasedShape]:
+        """As `leases_of`, with what is leased."""
+        ...
+
+    def leased_shapes(self, lease_ids: SizedIterable[int]) -> Mapping[int, LeasedShape]:
+        """Leases with what is leased, ended or not; unknown ids are left out."""
         ...
 
     def active_leases(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Lease]:

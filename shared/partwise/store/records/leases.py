@@ -5,6 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 
 from partwise.errors import ParameterError
+from partwise.store.records.shapes import ShapeState
 
 MAX_HELD = 4
 """Shapes that a person may hold at once, beside one that is prefetched."""
@@ -95,6 +96,17 @@ class Lease:
     score_name: str | None = None
     score: float | None = None
     model_version: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LeasedShape:
+    """A lease with what its holder goes on with. draft_id : the holder's open draft of the shape, None without one."""
+
+    lease: Lease
+    source_key: str
+    state: ShapeState
+    mesh_hash: str | None
+    draft_id: int | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,11 @@
 """Leases: who holds what, for how long, and how that ends."""
 
 from collections.abc import Collection as SizedIterable
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import Connection, Row, bindparam, delete, select, update
+from sqlalchemy import Connection, Row, Select, and_, bindparam, delete, select, update
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
@@ -13,9 +13,11 @@ from partwise.store.records import (
     MAX_HELD,
     EventKind,
     Lease,
+    LeasedShape,
     LeaseOutcome,
     LeasePurpose,
     NewEvent,
+    ShapeState,
     check_lease_time,
 )
 from partwise.store.sql.collections import append_audit
@@ -33,6 +35,18 @@ def lease(connection: Connection, lease_id: int) -> Lease:
 def leases_of(connection: Connection, person_id: int) -> list[Lease]:
     found = connection.execute(_HELD, {"of_person": person_id})
     return sorted((to_lease(row) for row in found), key=lambda each: each.id)
+
+
+def leased_by(connection: Connection, person_id: int) -> list[LeasedShape]:
+    found = connection.execute(_LEASED_BY, {"of_person": person_id})
+    return sorted((_leased(row) for row in found), key=lambda each: each.lease.id)
+
+
+def leased_shapes(connection: Connection, lease_ids: SizedIterable[int]) -> dict[int, LeasedShape]:
+    found = {}
+    for some in batches(lease_ids):
+        found.update({row.id: _leased(row) for row in connection.execute(_LEASED, {"ids": some})})
+    return found
 
 
 def active_leases(connection: Connection, collection_id: int, after: int, limit: int) -> list[Lease]:
@@ -202,8 +216,12 @@ def _found(row: Row[Any] | None, lease_id: int) -> Lease:
 
 
 def to_lease(row: Row[Any]) -> Lease:
-    outcome = None if row.outcome is None else LeaseOutcome(row.outcome)
-    return Lease(**{**row._mapping, "purpose": LeasePurpose(row.purpose), "outcome": outcome})
+    return _lease(row._mapping)
+
+
+def _lease(columns: Mapping[str, Any]) -> Lease:
+    outcome = None if columns["outcome"] is None else LeaseOutcome(columns["outcome"])
+    return Lease(**{**columns, "purpose": LeasePurpose(columns["purpose"]), "outcome": outcome})
 
 
 def active_of_shape(connection: Connection, shape_id: int) -> Sequence[Lease]:
@@ -211,5 +229,27 @@ def active_of_shape(connection: Connection, shape_id: int) -> Sequence[Lease]:
     return held_shapes(connection, [shape_id]).get(shape_id, [])
 
 
-_HELD = select(t.lease).where(t.lease.c.person_id == bindparam("of_person"), t.lease.c.released_at.is_(None))
-"""Built once, as everybody at work asks it every few seconds."""
+def _leased(row: Row[Any]) -> LeasedShape:
+    lease_row = {name: row._mapping[name] for name in _LEASE_COLUMNS}
+    return LeasedShape(_lease(lease_row), row.source_key, ShapeState(row.state), row.mesh_hash, row.draft_id)
+
+
+def _with_shapes() -> Select[Any]:
+    """Leases beside their shapes and their holders' open drafts of these."""
+    known, draft = t.lease.c, t.draft.c
+    is_theirs = and_(draft.person_id == known.person_id, draft.shape_id == known.shape_id, draft.closed_at.is_(None))
+    shape = (t.shape.c.source_key, t.shape.c.mesh_hash, t.shape_facet.c.state)
+    return (
+        select(t.lease, *shape, draft.id.label("draft_id"))
+        .join_from(t.lease, t.shape, t.shape.c.id == known.shape_id)
+        .join(t.shape_facet, t.shape_facet.c.shape_id == known.shape_id)
+        .join(t.draft, is_theirs, isouter=True)
+    )
+
+
+# Built once, as everybody at work asks them every few seconds.
+_LEASE_COLUMNS = t.lease.c.keys()
+_IS_HELD = and_(t.lease.c.person_id == bindparam("of_person"), t.lease.c.released_at.is_(None))
+_HELD = select(t.lease).where(_IS_HELD)
+_LEASED_BY = _with_shapes().where(_IS_HELD)
+_LEASED = _with_shapes().where(t.lease.c.id.in_(bindparam("ids", expanding=True)))

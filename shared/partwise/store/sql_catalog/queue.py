@@ -27,6 +27,14 @@ class SqlQueueCatalog(SqlBase):
         with reading(self._engine) as connection:
             return leases.leases_of(connection, person_id)
 
+    def leased_by(self, person_id: int) -> Sequence[r.LeasedShape]:
+        with reading(self._engine) as connection:
+            return leases.leased_by(connection, person_id)
+
+    def leased_shapes(self, lease_ids: SizedIterable[int]) -> Mapping[int, r.LeasedShape]:
+        with reading(self._engine) as connection:
+            return leases.leased_shapes(connection, lease_ids)
+
     def active_leases(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[r.Lease]:
         with reading(self._engine) as connection:
             return leases.active_leases(connection, collection_id, after, limit)

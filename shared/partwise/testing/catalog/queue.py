@@ -11,6 +11,7 @@ from partwise.store.records import (
     DEFAULT_RANKING,
     MAX_HELD,
     FirstShape,
+    LeasedShape,
     LeaseOutcome,
     LeasePurpose,
     NewClaim,
@@ -21,6 +22,7 @@ from partwise.store.records import (
 )
 from partwise.testing.catalog.samples import (
     add_collection,
+    blank_draft,
     claim,
     confirm,
     label,
@@ -91,6 +93,35 @@ class QueueConformance:
         assert [catalog.lease(each.id) for each in held] == held
         assert catalog.active_leases(collection.id) == held
         assert catalog.held_shapes([held[0].shape_id]) == {held[0].shape_id: [held[0]]}
+
+    def test_leases_come_with_what_is_leased(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 3)
+        ann, bob = (catalog.add_person(name) for name in ("ann", "bob"))
+        begun, untouched = (claim(catalog, collection, ann) for _ in range(2))
+        draft = blank_draft(catalog, begun)
+        shapes = catalog.listed_shapes([begun.shape_id, untouched.shape_id])
+        expected = [
+            LeasedShape(lease, row.shape.source_key, row.state, row.shape.mesh_hash, draft_id)
+            for lease, row, draft_id in (
+                (begun, shapes[begun.shape_id], draft.id),
+                (untouched, shapes[untouched.shape_id], None),
+            )
+        ]
+        assert catalog.leased_by(ann.id) == expected
+        assert catalog.leased_by(bob.id) == []
+        assert catalog.leased_shapes([untouched.id, begun.id, 999]) == {each.lease.id: each for each in expected}
+
+    def test_what_has_ended_is_told_but_not_held(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        lease = claim(catalog, collection, ann)
+        draft = blank_draft(catalog, lease)
+        ended = catalog.release_lease(lease.id, ann.id)
+        assert catalog.leased_by(ann.id) == []
+        assert catalog.leased_shapes([lease.id])[lease.id].lease == ended
+        assert catalog.leased_shapes([lease.id])[lease.id].draft_id == draft.id
+        catalog.discard_draft(draft.id, ann.id)
+        assert catalog.leased_shapes([lease.id])[lease.id].draft_id is None
 
     def test_a_person_holds_four_and_one_prefetched(self, catalog: Catalog) -> None:
         collection, shape_ids = ready_shapes(catalog, MAX_HELD + 2)
