@@ -6,16 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from partwise.store.records import NewClaim
-from partwise.store.sql.places import UNRANKED
 from partwise.workspace import ranking
 from partwise.workspace.ranking import (
-    BATCH,
     bring_into_order,
     diversified,
     materialise_ordering,
     rank_queue,
     refill_queue,
-    score_rank,
 )
 
 
@@ -95,20 +92,6 @@ def test_shapes_that_were_sent_back_stay_first(filled) -> None:
     filled.workspace.catalog.reopen_shape(a, filled.workspace.catalog.add_person("oscar").id)
     rank_queue(filled.workspace, filled.collection, "entropy")
     assert _order(filled, "ann") == [a, c, b]
-
-
-@given(st.floats(-1e6, 1e6, width=32), st.floats(-1e6, 1e6, width=32))
-def test_ranks_follow_scores(first: float, second: float) -> None:
-    higher, lower = max(first, second), min(first, second)
-    assert score_rank(higher) <= score_rank(lower)
-    assert score_rank(higher, descending=False) >= score_rank(lower, descending=False)
-    if higher - lower > 1e-6 * max(abs(higher), abs(lower), 1e-30):
-        assert score_rank(higher) < score_rank(lower)
-
-
-@given(st.floats(allow_nan=False, allow_infinity=False, width=32))
-def test_ranks_by_score_lie_between_the_first_ones_and_the_unranked(value: float) -> None:
-    assert BATCH < score_rank(value) < UNRANKED
 
 
 def test_an_ordering_is_made_anew(filled) -> None:

@@ -39,6 +39,18 @@ class ModelCatalog(Protocol):
         """A page of scored shapes in order of the score, ties by id, of these states if given."""
         ...
 
+    def highest_waiting(self, collection_id: int, score_name: str, limit: int) -> Sequence[int]:
+        """Shapes that wait for labels, free or held, highest score first."""
+        ...
+
+    def out_of_rank(self, collection_id: int, score_name: str) -> Mapping[int, int]:
+        """The ranks due to shapes that wait at another one than their score gives them, lowest first.
+
+        A higher score gives a lower rank, behind those below `FIRST_BY_SCORE` and before shapes that nothing ranked.
+        Shapes without the score are left out, and so are those that were sent back.
+        """
+        ...
+
     def replace_first_shapes(self, collection_id: int, first_shapes: Sequence[FirstShape]) -> None: ...
 
     def first_shapes(self, collection_id: int) -> Sequence[FirstShape]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import models, stages
+from partwise.store.sql import models, ranks, stages
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -42,6 +42,14 @@ class SqlModelCatalog(SqlBase):
     ) -> Sequence[r.QueueRow]:
         with reading(self._engine) as connection:
             return models.queue(connection, collection_id, score_name, descending, limit, after, states)
+
+    def highest_waiting(self, collection_id: int, score_name: str, limit: int) -> Sequence[int]:
+        with reading(self._engine) as connection:
+            return ranks.highest_waiting(connection, collection_id, score_name, limit)
+
+    def out_of_rank(self, collection_id: int, score_name: str) -> Mapping[int, int]:
+        with reading(self._engine) as connection:
+            return ranks.out_of_rank(connection, collection_id, score_name)
 
     def replace_first_shapes(self, collection_id: int, first_shapes: Sequence[r.FirstShape]) -> None:
         with writing(self._engine) as connection:

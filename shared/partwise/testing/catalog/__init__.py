@@ -9,6 +9,7 @@ from partwise.testing.catalog.labels import LabelConformance
 from partwise.testing.catalog.listing import ListingConformance
 from partwise.testing.catalog.models import ModelConformance
 from partwise.testing.catalog.queue import QueueConformance
+from partwise.testing.catalog.ranking import RankingConformance
 from partwise.testing.catalog.reviews import ReviewConformance
 from partwise.testing.catalog.shapes import ShapeConformance
 from partwise.testing.catalog.stages import StageConformance
@@ -23,6 +24,7 @@ class CatalogConformance(
     ReviewConformance,
     ModelConformance,
     QueueConformance,
+    RankingConformance,
     DraftConformance,
     ConfirmationConformance,
     JobConformance,
