@@ -21,7 +21,7 @@ from partwise.store.records import (
 from partwise.workspace.provenance import FailureCard, ProvenanceCard, provenance
 from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ScopedCollection, ScopedShape, WorkspaceDep, shapes_of
-from partwise_service.schemas.base import MAX_ROW_ID, Page
+from partwise_service.schemas.base import MAX_ROW_ID, NO_NUL, Page
 from partwise_service.schemas.paging import anchor_of, cursor_of
 from partwise_service.schemas.shapes import (
     CountOut,
@@ -38,6 +38,7 @@ from partwise_service.schemas.shapes import (
 from partwise_service.security.identity import Identity
 
 MAX_PAGE = 500
+MAX_NAME = 200
 NO_ORDER = "none"
 LIVE_UP_TO = 20_000
 """Shapes up to which a jump is into the present order; past them into one made beforehand, where there is one."""
@@ -51,16 +52,26 @@ NamedId = Annotated[int, Field(ge=1, le=MAX_ROW_ID)]
 StageName = Annotated[
     str | None, Query(pattern="^[a-z_]{1,64}$", description=f"The stage that failed, `{ANY_STAGE}` for whichever.")
 ]
+Searched = Annotated[str, NO_NUL, Field(min_length=1, max_length=MAX_NAME)]
+Name = Annotated[
+    Searched | None,
+    Query(description="A part of the shape's name, letters in either case. No character stands for others."),
+]
 OrderName = Annotated[
     str, Query(pattern="^[a-z_]{1,64}$", description=f"`{NO_ORDER}` (by id), `{BY_NAME}`, or a score's name.")
 ]
 
 
 async def shape_filter(
-    state: ShapeState | None = None, part: Id = None, cluster: Id = None, author: Id = None, failure: StageName = None
+    state: ShapeState | None = None,
+    part: Id = None,
+    cluster: Id = None,
+    author: Id = None,
+    failure: StageName = None,
+    name: Name = None,
 ) -> ShapeFilter:
     """What shapes must meet, all of it."""
-    return ShapeFilter(state, part, cluster, author, failure)
+    return ShapeFilter(state, part, cluster, author, failure, name)
 
 
 async def shape_order(order: OrderName = NO_ORDER, direction: DirectionName = DirectionName.ASC) -> ShapeOrder:

@@ -56,6 +56,7 @@ def test_pages_in_order_of_a_score_follow_each_other(annotator, table) -> None:
         {"after": "x"}, {"after": "1~x"}, {"after": "1~nan"}, {"after": "1~inf"}, {"after": "-1"}, {"after": "9" * 12},
         {"after": "1" * 81}, {"limit": 0}, {"limit": 501}, {"state": "odd"}, {"order": "entropy; DROP TABLE shape"},
         {"part": -1}, {"cluster": 2**40}, {"direction": "perhaps"}, {"failure": "A"},
+        {"name": ""}, {"name": "n" * 201}, {"name": "a\0b"},
     ],
 )  # fmt: skip
 def test_a_query_out_of_range_is_refused(annotator, table, query) -> None:
@@ -85,6 +86,22 @@ def test_filters_by_cluster(annotator, workspace, mugs, table) -> None:
     workspace.catalog.set_clusters(mugs.collection_id, {mugs.ids["a.off"]: 0, mugs.ids["b.off"]: 3})
     assert _keys(annotator.get(table, params={"cluster": 3})) == ["b.off"]
     assert annotator.get(table).json()["items"][0]["cluster"] == 0
+
+
+def test_a_part_of_the_name_filters_pages_counts_and_jumps(annotator, workspace, mugs, table) -> None:
+    workspace.catalog.set_clusters(mugs.collection_id, {mugs.ids["b.off"]: 1, mugs.ids["sub/c.off"]: 1})
+    of_c = {"name": "SUB/"}
+    for order in ("none", "name", "entropy"):
+        assert _keys(annotator.get(table, params={**of_c, "order": order, "cluster": 1})) == ["sub/c.off"]
+    assert _keys(annotator.get(table, params={**of_c, "cluster": 0})) == []
+    assert annotator.get(f"{table}/count", params={"name": ".off"}).json() == {"n_shapes": 3}
+    jumped = annotator.get(f"{table}/ranked", params={"name": ".off", "order": "name", "first_rank": 1}).json()
+    assert (jumped["n_shapes"], [row["source_key"] for row in jumped["items"]]) == (3, ["b.off", "sub/c.off"])
+
+
+@pytest.mark.parametrize("name", ["%", "_", "a_off", "*", "\\"])
+def test_no_character_of_a_name_stands_for_others(annotator, table, name) -> None:
+    assert _keys(annotator.get(table, params={"name": name})) == []
 
 
 @pytest.mark.parametrize("direction", ["asc", "desc"])

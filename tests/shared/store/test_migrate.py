@@ -18,7 +18,7 @@ _NEXT = """
 from alembic import op
 import sqlalchemy as sa
 revision = "9999"
-down_revision = "0006"
+down_revision = "0007"
 def upgrade():
     op.create_table("hat", sa.Column("id", sa.Integer, primary_key=True))
     {last}
@@ -96,7 +96,7 @@ def test_a_newer_schema_asks_for_a_newer_partwise(
         later.setattr(migrate, "_MIGRATIONS", later_migrations)
         create_catalog(f"sqlite:///{catalog_file}").close()
     for opened in (open_catalog, create_catalog):
-        with pytest.raises(StoreError, match="newer than 0006; use a newer partwise"):
+        with pytest.raises(StoreError, match="newer than 0007; use a newer partwise"):
             opened(f"sqlite:///{catalog_file}")
 
 

@@ -18,6 +18,7 @@ class ShapeFilter:
 
     part_id : its newest shown labels have this part. author_id : who made those. cluster : in the embedding.
     failed_stage : the stage that failed for it, `ANY_STAGE` for whichever.
+    name : a part of its source key, letters in either case; of SQLite these are A to Z only.
     """
 
     state: ShapeState | None = None
@@ -25,6 +26,7 @@ class ShapeFilter:
     cluster: int | None = None
     author_id: int | None = None
     failed_stage: str | None = None
+    name: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

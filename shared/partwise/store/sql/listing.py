@@ -113,6 +113,8 @@ def _conditions(facets: Table, collection_id: int, where: ShapeFilter) -> list[C
         conditions.append(facet.failed_stage.is_not(None))
     elif where.failed_stage is not None:
         conditions.append(facet.failed_stage == where.failed_stage)
+    if where.name is not None:
+        conditions.append(facet.source_key.icontains(where.name, autoescape=True))
     return conditions
 
 

@@ -4,7 +4,7 @@ from partwise.store.tables.accepts import accept_batch, recheck
 from partwise.store.tables.base import UtcDateTime, metadata
 from partwise.store.tables.collections import audit, collection, part, person
 from partwise.store.tables.drafts import answer, blind_check, consensus, draft, stroke
-from partwise.store.tables.jobs import event, job, training_tally
+from partwise.store.tables.jobs import event, job, training_tally, worker
 from partwise.store.tables.labels import label_part, label_revision, review
 from partwise.store.tables.leases import honeypot, lease, queue_rank
 from partwise.store.tables.listing import head_part, ordering, ordering_row, shape_facet
@@ -52,4 +52,5 @@ __all__ = [
     "stroke",
     "token",
     "training_tally",
+    "worker",
 ]

@@ -1,6 +1,19 @@
 """Jobs, what counts towards the next training, and events."""
 
-from sqlalchemy import JSON, Boolean, CheckConstraint, Column, ForeignKey, Index, Integer, String, Table, Text, text
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    Boolean,
+    CheckConstraint,
+    Column,
+    ForeignKey,
+    Index,
+    Integer,
+    String,
+    Table,
+    Text,
+    text,
+)
 
 from partwise.store.tables.base import UtcDateTime, metadata
 
@@ -42,6 +55,17 @@ Index(  # at most one waits for all who ask
 Index("ix_job_pending", job.c.id, sqlite_where=_IS_PENDING, postgresql_where=_IS_PENDING)
 Index("ix_job_running", job.c.collection_id, job.c.kind, sqlite_where=_IS_RUNNING, postgresql_where=_IS_RUNNING)
 Index("ix_job_running_heartbeat_at", job.c.heartbeat_at, sqlite_where=_IS_RUNNING, postgresql_where=_IS_RUNNING)
+
+worker = Table(  # processes that do jobs, and what they take of their machines
+    "worker",
+    metadata,
+    Column("owner", String(200), primary_key=True),
+    Column("memory_bytes", BigInteger, nullable=False),
+    Column("n_actors", Integer, nullable=False),
+    Column("actor_bytes", BigInteger, nullable=False),
+    Column("free_bytes", BigInteger),
+    Column("seen_at", UtcDateTime, nullable=False),
+)
 
 training_tally = Table(  # shapes confirmed since the last training began
     "training_tally",

@@ -4,8 +4,8 @@ from sqlalchemy import Boolean, Column, Double, ForeignKey, Index, Integer, Stri
 
 from partwise.store.tables.base import UtcDateTime, metadata
 
-FACETS = ("state", "author_id", "cluster", "failed_stage")
-"""Columns that shapes are filtered by. An index for each order ends in all of them: who walks along the order, past
+FACETS = ("state", "author_id", "cluster", "failed_stage", "source_key")
+"""Columns that shapes are filtered by. An index for each order has all of them: who walks along the order, past
 however many shapes that a filter leaves out, reads that index and nothing else.
 """
 
@@ -20,7 +20,7 @@ shape_facet = Table(  # a copy of what `sql.state` derives, renewed in the trans
     Column("cluster", Integer),
     Column("source_key", Text, nullable=False, server_default=""),
     Index("ix_shape_facet_by_id", "collection_id", "shape_id", *FACETS),
-    Index("ix_shape_facet_by_name", "collection_id", "source_key", "shape_id", *FACETS),
+    Index("ix_shape_facet_by_name", "collection_id", "source_key", "shape_id", *FACETS[:-1]),
     Index("ix_shape_facet_by_state", "collection_id", "state", "shape_id", "author_id", "cluster", "failed_stage"),
     Index("ix_shape_facet_by_author", "collection_id", "author_id", "shape_id", "state", "cluster", "failed_stage"),
     Index("ix_shape_facet_by_cluster", "collection_id", "cluster", "shape_id", "state", "author_id", "failed_stage"),

@@ -15,6 +15,7 @@ from partwise.store.records import (
     ListAnchor,
     NewFailure,
     NewScore,
+    NewShape,
     NewStageRun,
     RevisionKind,
     ShapeFilter,
@@ -44,6 +45,16 @@ def _scored(catalog: Catalog, values: Sequence[float] = VALUES) -> tuple[Collect
     model = save_model(catalog, collection.id)
     scores = [NewScore(shape_ids[i], model.id, "entropy", value) for i, value in enumerate(values)]
     catalog.record_done([], scores)
+    return collection, shape_ids
+
+
+def _named(catalog: Catalog, *names: str) -> tuple[Collection, list[int]]:
+    """A collection of shapes with these names, each with a score."""
+    collection = catalog.create_collection("things", ["body"])
+    added = catalog.add_shapes(collection.id, [NewShape(name, "0" * 64, ".off") for name in names])
+    shape_ids = [each.shape_id for each in added]
+    model = save_model(catalog, collection.id)
+    catalog.record_done([], [NewScore(i, model.id, "entropy", n % 3 / 3) for n, i in enumerate(shape_ids)])
     return collection, shape_ids
 
 
@@ -160,6 +171,39 @@ class ListingConformance:
             assert _ids(catalog, collection, where, ShapeOrder("entropy")) == sorted(
                 set(ids) - {e}, key=lambda i: (VALUES[(a, b, c, d).index(i)], i)
             )
+
+    def test_names_are_searched_for_a_part_of_them(self, catalog: Catalog) -> None:
+        collection, (a, b, c) = _named(catalog, "Chairs/Old_100%.off", "chairs/old-100.off", "mugs/é.OFF")
+        expected = {
+            "CHAIRS/": [a, b],
+            "old": [a, b],
+            ".off": [a, b, c],
+            "d_1": [a],
+            "100%": [a],
+            "é": [c],
+            "/": [a, b, c],
+        }
+        for name, ids in expected.items():
+            for order in (ShapeOrder(), ShapeOrder(BY_NAME), ShapeOrder("entropy")):
+                where = ShapeFilter(name=name)
+                assert sorted(_ids(catalog, collection, where, order)) == ids, (name, order)
+                assert catalog.count_shapes(collection.id, where=where, order=order) == len(ids)
+        assert _ids(catalog, collection, ShapeFilter(name="chairs/o_d")) == []
+        assert _ids(catalog, collection, ShapeFilter(name="%")) == [a]
+
+    @pytest.mark.parametrize("name", [None, BY_NAME, "entropy"])
+    @pytest.mark.parametrize("descending", [False, True])
+    def test_names_go_with_all_other_filters_and_orders(
+        self, catalog: Catalog, name: str | None, descending: bool
+    ) -> None:
+        collection, shape_ids = _named(catalog, *(f"{kind}/{n}.off" for n in range(4) for kind in ("chair", "stool")))
+        catalog.set_clusters(collection.id, dict.fromkeys(shape_ids[:5], 1))
+        order, where = ShapeOrder(name, descending), ShapeFilter(name="CHAIR", cluster=1)
+        everything = _ids(catalog, collection, ShapeFilter(), order)
+        listed = _ids(catalog, collection, where, order)
+        assert listed == [each for each in everything if each in (shape_ids[0], shape_ids[2], shape_ids[4])]
+        found = catalog.shapes_from_rank(collection.id, 1, where=where, order=order)
+        assert [row.shape.id for row in found] == listed[1:]
 
     def test_states_in_the_table_are_the_derived_ones(self, catalog: Catalog) -> None:
         collection, (a, b, c, d) = add_collection(catalog, 4)
