@@ -125,6 +125,15 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 
 @contextmanager
+def writing_at_once(engine: Engine) -> Iterator[Connection]:
+    """As `writing`, for what is one statement in PostgreSQL: there that is a transaction by itself, without the trips
+    to the server that begin and end one. Several statements would be as many transactions.
+    """
+    with reading(engine) if engine.dialect.name == "postgresql" else writing(engine) as connection:
+        yield connection
+
+
+@contextmanager
 def _in_one_line(engine: Engine) -> Iterator[None]:
     """Turn the driver's errors into the project's, with a remedy."""
     try:

@@ -5,7 +5,25 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, Update, bindparam, exists, insert, select, update
+from sqlalchemy import (
+    JSON,
+    ColumnElement,
+    Connection,
+    Integer,
+    Row,
+    Select,
+    String,
+    bindparam,
+    cast,
+    exists,
+    func,
+    insert,
+    select,
+    true,
+    update,
+)
+from sqlalchemy.dialects.postgresql import ARRAY
+from sqlalchemy.sql.dml import ReturningUpdate
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError, StaleDraftError
 from partwise.labels.annotation_cost import AnnotationCost
@@ -88,10 +106,7 @@ def append_strokes(
     strokes: Sequence[Stroke],
     now: datetime,
 ) -> Draft:
-    _refuse_misnumbered(person_id, expected_sequence, strokes)
-    followed_on = _follow_on(connection, draft_id, person_id, expected_sequence, strokes, now)
-    if followed_on is not None:
-        return followed_on
+    """Of strokes that `follow_on` has left, appends those that are not on record, or says why they cannot be."""
     known = locked_draft(connection, draft_id, person_id)
     refuse_closed(known)
     new = _unknown(connection, known, strokes)
@@ -119,7 +134,7 @@ def append_strokes(
     return to_draft(connection.execute(statement).one())
 
 
-def _follow_on(
+def follow_on(
     connection: Connection,
     draft_id: int,
     person_id: int,
@@ -127,22 +142,32 @@ def _follow_on(
     strokes: Sequence[Stroke],
     now: datetime,
 ) -> Draft | None:
-    """Appends strokes that are all new and just what comes next, as nearly all are: two statements in all.
+    """Appends strokes that are all new and just what comes next, as nearly all are.
 
-    None, with nothing changed, for any others: what is to be said of those takes a closer look.
+    In PostgreSQL it is one statement, which needs no transaction around it; in SQLite two, which do. None, with
+    nothing changed, for any other strokes: what is to be said of those takes a closer look.
     """
+    _refuse_misnumbered(person_id, expected_sequence, strokes)
     bases = {stroke.base_revision for stroke in strokes}
     if len(bases) != 1 or len(strokes) > _FOLLOWING:
         return None
+    ids = [str(stroke.id) for stroke in strokes]
     expected = {
         "of_draft": draft_id,
         "of_person": person_id,
         "on_record": expected_sequence,
         "on_base": bases.pop(),
-        "ids": [str(stroke.id) for stroke in strokes],
+        "ids": ids,
         "now_on_record": expected_sequence + len(strokes),
         "now": now,
     }
+    if connection.dialect.name == "postgresql":
+        sent = {
+            "sequences": [stroke.sequence for stroke in strokes],
+            "payloads": [json.dumps(stroke_to_document(stroke)) for stroke in strokes],
+        }
+        row = connection.execute(_FOLLOW_ON_AND_INSERT, expected | sent).first()
+        return None if row is None else to_draft(row)
     row = connection.execute(_FOLLOW_ON, expected).first()
     if row is None:
         return None
@@ -297,12 +322,13 @@ def to_draft(row: Row[Any]) -> Draft:
     return Draft(**{**row._mapping, "purpose": LeasePurpose(row.purpose), "outcome": outcome})
 
 
-def _following() -> Update:
-    """Counts strokes that are new and just what comes next into their draft; returns nothing if they are not that."""
-    draft, stroke = t.draft.c, t.stroke.c
-    is_any_known = exists().where(
-        stroke.draft_id == bindparam("of_draft"), stroke.id.in_(bindparam("ids", expanding=True))
-    )
+def _following(is_among_ids: ColumnElement[bool]) -> ReturningUpdate[Any]:
+    """Counts strokes that are new and just what comes next into their draft; returns nothing if they are not that.
+
+    is_among_ids : whether a stroke's id is one of theirs.
+    """
+    draft = t.draft.c
+    is_any_known = exists().where(t.stroke.c.draft_id == bindparam("of_draft"), is_among_ids)
     return (
         update(t.draft)
         .where(draft.id == bindparam("of_draft"), draft.person_id == bindparam("of_person"))
@@ -314,8 +340,27 @@ def _following() -> Update:
     )
 
 
+def _following_with_strokes() -> Select[Any]:
+    """As `_following`, and adds the strokes: PostgreSQL does both in one statement."""
+    followed = _following(t.stroke.c.id == func.any(bindparam("ids", type_=ARRAY(String)))).cte("followed")
+    sent = (
+        func.unnest(
+            bindparam("sequences", type_=ARRAY(Integer)),
+            bindparam("ids", type_=ARRAY(String)),
+            bindparam("payloads", type_=ARRAY(String)),
+        )
+        .table_valued("sequence", "id", "payload", name="sent")
+        .render_derived()
+    )
+    payload, now = cast(sent.c.payload, JSON), bindparam("now", type_=t.stroke.c.recorded_at.type)
+    rows = select(followed.c.id, sent.c.sequence, sent.c.id, payload, now).join_from(followed, sent, true())
+    columns = ("draft_id", "sequence", "id", "payload", "recorded_at")
+    return select(followed).add_cte(insert(t.stroke).from_select(columns, rows).cte("added"))
+
+
 # Built once, as people at work ask them all the time and building one costs as much as asking it.
-_FOLLOW_ON = _following()
+_FOLLOW_ON = _following(t.stroke.c.id.in_(bindparam("ids", expanding=True)))
+_FOLLOW_ON_AND_INSERT = _following_with_strokes()
 _DRAFT = select(t.draft).where(t.draft.c.id == bindparam("of_draft"))
 _OPEN_DRAFTS = (
     select(t.draft)

@@ -121,7 +121,8 @@ def refuse_another(connection: Connection, person_id: int) -> None:
     """Let nobody hold more than `MAX_HELD` shapes beside the prefetched one."""
     held = [each for each in leases_of(connection, person_id) if not each.is_prefetched]
     if len(held) >= MAX_HELD:
-        shapes = ", ".join(str(each.shape_id) for each in held)
+        name = select(t.shape.c.source_key).where(t.shape.c.id.in_([each.shape_id for each in held]))
+        shapes = ", ".join(connection.scalars(name.order_by(t.shape.c.id)))
         raise ConflictError(
             f"a person holds at most {MAX_HELD} shapes and holds {shapes}; confirm or release one first"
         )
@@ -216,7 +217,7 @@ def _found(row: Row[Any] | None, lease_id: int) -> Lease:
 
 
 def to_lease(row: Row[Any]) -> Lease:
-    return _lease(row._mapping)
+    return _lease({**row._mapping})
 
 
 def _lease(columns: Mapping[str, Any]) -> Lease:

@@ -7,7 +7,7 @@ from jaxtyping import UInt16
 
 from partwise.labels.strokes import Stroke
 from partwise.store import records as r
-from partwise.store.engine import reading, writing
+from partwise.store.engine import reading, writing, writing_at_once
 from partwise.store.sql import answers, confirm, drafts
 from partwise.store.sql_catalog.base import SqlBase
 
@@ -32,8 +32,13 @@ class SqlDraftCatalog(SqlBase):
     def append_strokes(
         self, draft_id: int, person_id: int, expected_sequence: int, strokes: Sequence[Stroke]
     ) -> r.Draft:
+        sent = (draft_id, person_id, expected_sequence, strokes)
+        with writing_at_once(self._engine) as connection:
+            followed_on = drafts.follow_on(connection, *sent, self._clock())
+        if followed_on is not None:
+            return followed_on
         with writing(self._engine) as connection:
-            return drafts.append_strokes(connection, draft_id, person_id, expected_sequence, strokes, self._clock())
+            return drafts.append_strokes(connection, *sent, self._clock())
 
     def strokes(self, draft_id: int, *, after: int = -1, limit: int = 10000) -> Sequence[r.StoredStroke]:
         with reading(self._engine) as connection:
