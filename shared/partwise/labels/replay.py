@@ -17,6 +17,7 @@ from partwise.labels.operations import Assign, Clear, Delta, Edit, Operation, Pa
 from partwise.labels.schema import MAX_PART_ID
 from partwise.labels.strokes import StrokeLog
 from partwise.mesh import TriMesh
+from partwise.segmentation.face_graph import check_face
 from partwise.segmentation.paint import PaintSurface, painted_faces
 from partwise.segmentation.region import region_of
 from partwise.unlabelled import NO_PART_ID
@@ -146,7 +147,7 @@ class Replay:
                 return self._relabelled(painted_faces(self._surface, edit.seeds, edit.brush, is_open), edit.label)
             case Assign():
                 self._check_part(edit.label)
-                self._surface.graph.check_face(edit.end - 1)
+                check_face(edit.end - 1, self._surface.n_faces)
                 return self._relabelled(edit.faces(), edit.label)
             case SegmentWide():
                 self._check_part(edit.label)

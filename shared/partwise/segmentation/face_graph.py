@@ -56,10 +56,7 @@ class FaceGraph:
 
     def check_face(self, face: int) -> None:
         """Raises ParameterError unless 0 ≤ face < m."""
-        if not 0 <= face < self.n_faces:
-            raise ParameterError(
-                f"a face must be 0 to {self.n_faces - 1} but is {face}; was it chosen on another mesh or resolution?"
-            )
+        check_face(face, self.n_faces)
 
     def grown(self, seed: int, is_open: Callable[[np.ndarray], np.ndarray]) -> Int[np.ndarray, " r"]:
         """Faces reached from `seed` breadth-first through open faces, ascending; none when the seed is not open.
@@ -98,3 +95,11 @@ class FaceGraph:
         is_spent[fans] = True
         parts = [self.fan_faces[self.fan_start[fan] : self.fan_start[fan + 1]] for fan in fans.tolist()]
         return np.concatenate(parts) if parts else np.empty(0, dtype=np.int64)
+
+
+def check_face(face: int, n_faces: int) -> None:
+    """Raises ParameterError unless 0 ≤ face < n_faces."""
+    if not 0 <= face < n_faces:
+        raise ParameterError(
+            f"a face must be 0 to {n_faces - 1} but is {face}; was it chosen on another mesh or resolution?"
+        )

@@ -7,6 +7,7 @@ that two programs agree face for face. No angle is ever computed: an angle limit
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -55,22 +56,11 @@ class Brush:
         return cls(radius, math.cos(math.radians(max_angle_degrees)))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class PaintSurface:
-    """What painting needs of a mesh; made once per mesh.
+    """What painting needs of a mesh. Each quantity is made when it is first asked for: many edits need none."""
 
-    centroids : (m, 3) float64, ((a + b) + c) / 3 of the float32 corners, model units.
-    crosses : (m, 3) float64, (b − a) × (c − a): the normal, not scaled.
-    cross_lengths : (m,) float64, its length, twice the area; 0 for degenerate faces.
-    diagonal : length of the bounding box's diagonal, over the vertices that faces use, model units.
-    graph : which faces touch across edges.
-    """
-
-    centroids: Float[np.ndarray, "m 3"]
-    crosses: Float[np.ndarray, "m 3"]
-    cross_lengths: Float[np.ndarray, " m"]
-    diagonal: float
-    graph: FaceGraph
+    def __init__(self, mesh: TriMesh) -> None:
+        self._mesh = mesh
 
     @classmethod
     def build(cls, mesh: TriMesh) -> "PaintSurface":
@@ -79,22 +69,48 @@ class PaintSurface:
             raise MeshError(
                 f"coordinates must fit float32 but reach {np.abs(mesh.vertices).max():.3g}; scale the mesh down"
             )
-        vertices = mesh.vertices.astype(np.float32).astype(np.float64)
-        a, b, c = (vertices[mesh.faces[:, k]] for k in range(3))
-        crosses = _cross(b - a, c - a)
-        used = vertices[np.unique(mesh.faces)]
-        extent = used.max(axis=0) - used.min(axis=0)
-        return cls(
-            centroids=((a + b) + c) / 3.0,
-            crosses=crosses,
-            cross_lengths=np.sqrt(_dot(crosses, crosses)),
-            diagonal=float(np.sqrt(_dot(extent, extent))),
-            graph=FaceGraph.build(mesh),
-        )
+        return cls(mesh)
 
     @property
     def n_faces(self) -> int:
-        return len(self.centroids)
+        return self._mesh.n_faces
+
+    @cached_property
+    def centroids(self) -> Float[np.ndarray, "m 3"]:
+        """(m, 3) float64, ((a + b) + c) / 3 of the float32 corners, model units."""
+        a, b, c = self._corners()
+        return ((a + b) + c) / 3.0
+
+    @cached_property
+    def crosses(self) -> Float[np.ndarray, "m 3"]:
+        """(m, 3) float64, (b − a) × (c − a): the normal, not scaled."""
+        a, b, c = self._corners()
+        return _cross(b - a, c - a)
+
+    @cached_property
+    def cross_lengths(self) -> Float[np.ndarray, " m"]:
+        """(m,) float64, length of the cross product, twice the area; 0 for degenerate faces."""
+        return np.sqrt(_dot(self.crosses, self.crosses))
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the bounding box's diagonal, over the vertices that faces use, model units."""
+        used = self._vertices()[np.unique(self._mesh.faces)]
+        extent = used.max(axis=0) - used.min(axis=0)
+        return float(np.sqrt(_dot(extent, extent)))
+
+    @cached_property
+    def graph(self) -> FaceGraph:
+        """Which faces touch across edges."""
+        return FaceGraph.build(self._mesh)
+
+    def _vertices(self) -> Float[np.ndarray, "n 3"]:
+        return self._mesh.vertices.astype(np.float32).astype(np.float64)
+
+    def _corners(self) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
+        vertices = self._vertices()
+        a, b, c = (vertices[self._mesh.faces[:, k]] for k in range(3))
+        return a, b, c
 
 
 def painted_faces(
