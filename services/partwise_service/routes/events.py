@@ -1,7 +1,8 @@
 """/events: changes in the queue, training, stages, jobs, people and shapes, pushed to open pages."""
 
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -10,7 +11,7 @@ from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import StreamingResponse
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import EventKind
+from partwise.store.records import Event, EventKind, Role
 from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import Caller, CatalogDep, ServiceDep
 from partwise_service.event_hub import POLL_S, Listener
@@ -68,12 +69,23 @@ async def stream_events(
 
     async def told() -> AsyncIterator[str]:
         listener = Listener(hub, catalog, caller.token.scope)
+
+        async def read(last: int) -> Sequence[Event]:
+            return [as_told(event, caller) for event in await listener.read(last)]
+
         async with hub.listening():
-            async for piece in event_stream(lambda: run_sync(catalog.event_bounds), listener.read, go_on, resumed):
+            async for piece in event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed):
                 yield piece
 
     resumed = after if last_event_id is None else _event_id(last_event_id)
     return StreamingResponse(told(), media_type=EVENT_STREAM, headers={"X-Accel-Buffering": "no"})
+
+
+def as_told(event: Event, caller: Identity) -> Event:
+    """Who does what is for themselves and for operators to know: others hear which shape it is about, and no more."""
+    if event.payload.get("person_id") in (None, caller.person_id) or caller.role.includes(Role.OPERATOR):
+        return event
+    return replace(event, payload={name: event.payload[name] for name in ("shape_id",) if name in event.payload})
 
 
 def is_still_good(catalog: Catalog, caller: Identity) -> bool:

@@ -16,6 +16,7 @@ from partwise_service.dependencies import (
     WorkspaceDep,
 )
 from partwise_service.held_leases import leases_out, visible_lease
+from partwise_service.problems import ProblemError, ProblemKind
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.drafts import Confirm, Confirmed
 from partwise_service.schemas.queue import LeaseOut, LeasesOut, Renewal, Skip
@@ -49,11 +50,18 @@ def list_leases(
 def renew_lease(
     caller: Annotator, service: ServiceDep, catalog: CatalogDep, lease_id: RowId, renewal: Renewal
 ) -> LeaseOut:
-    """Hold the shape for longer. 409 if it has ended: then others may have it, and the draft is still there."""
+    """Hold the shape for longer. 409 if it has ended: then others may have it, and the draft is still there.
+
+    The problem's `outcome` tells how: whoever finds it `cleared` leaves the shape, rather than claiming it anew.
+    """
     visible_lease(catalog, caller, lease_id)
-    renewed = catalog.renew_lease(
-        lease_id, caller.person_id, service.settings.lease_s, is_prefetched=renewal.is_prefetched
-    )
+    try:
+        renewed = catalog.renew_lease(
+            lease_id, caller.person_id, service.settings.lease_s, is_prefetched=renewal.is_prefetched
+        )
+    except ConflictError as error:
+        outcome = catalog.lease(lease_id).outcome
+        raise ProblemError(ProblemKind.CONFLICT, str(error), {"outcome": outcome and outcome.value}) from error
     return leases_out(catalog, [renewed], caller)[0]
 
 

@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from partwise.store.records import Event, EventBounds, EventKind, NewEvent
+from partwise.store.records import Event, EventBounds, EventKind, NewEvent, Role
 from partwise_service import event_hub
 from partwise_service.event_hub import PAGE, EventHub, Listener
 from partwise_service.event_stream import HEARTBEAT_TURNS, event_stream
@@ -69,6 +69,24 @@ def test_a_claim_is_told(annotator, mugs) -> None:
     annotator.post("/queue/claim", json={"collection_id": mugs.collection_id})
     told = _events(annotator.get("/events", params={"after": first}).text)
     assert [(kind, data["payload"]["what"]) for _, kind, data in told[1:]] == [("queue", "claimed")]
+
+
+def test_who_holds_a_shape_and_operators_hear_that_it_was_taken_away_others_only_which_shape(
+    annotator, operator, issue, mugs
+) -> None:
+    other = issue("ben", Role.ANNOTATOR, (mugs.collection_id,))
+    first = _events(annotator.get("/events").text)[0][0]
+    lease = annotator.post("/queue/claim", json={"collection_id": mugs.collection_id}).json()["items"][0]
+    operator.post(f"/leases/{lease['id']}/clear")
+
+    def payloads(caller) -> list[dict]:
+        told = _events(caller.get("/events", params={"after": first}).text)
+        return [data["payload"] for _, kind, data in told if kind == "queue"]
+
+    about = {"shape_id": lease["shape_id"]}
+    full = [{**about, "person_id": lease["person_id"], "what": what} for what in ("claimed", "cleared")]
+    assert payloads(annotator) == payloads(operator) == full
+    assert payloads(other) == [about, about]
 
 
 def test_who_missed_forgotten_events_is_told_to_begin_anew(annotator, workspace, mugs) -> None:

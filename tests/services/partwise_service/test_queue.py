@@ -73,7 +73,8 @@ def test_a_shape_that_another_has_is_named_as_refused(annotator, ben, claim, mug
 def test_it_is_a_conflict_if_none_can_be_had(annotator, ben, claim, mugs) -> None:
     claim(ben, mugs.ids["a.off"])
     answer = claim(annotator, mugs.ids["a.off"])
-    assert (answer.status_code, "someone else" in answer.json()["detail"]) == (409, True)
+    assert answer.status_code == 409
+    assert answer.json()["detail"].startswith("a.off is with someone else now;")
 
 
 def test_shapes_of_another_collection_cannot_be_named(operator, claim, mugs) -> None:
@@ -139,6 +140,13 @@ def test_an_operator_takes_a_shape_from_whoever_holds_it(annotator, operator, cl
     lease = claim(annotator).json()["items"][0]
     assert operator.post(f"/leases/{lease['id']}/clear").json()["outcome"] == "cleared"
     assert annotator.get("/leases").json()["items"] == []
+
+
+def test_whose_shape_was_taken_away_is_told_so_by_the_next_heartbeat(annotator, operator, claim) -> None:
+    lease = claim(annotator).json()["items"][0]
+    operator.post(f"/leases/{lease['id']}/clear")
+    refused = annotator.post(f"/leases/{lease['id']}/heartbeat", json={})
+    assert (refused.status_code, refused.json()["outcome"]) == (409, "cleared")
 
 
 def test_annotators_clear_nothing(annotator, claim) -> None:

@@ -132,8 +132,8 @@ def _taken_up(connection: Connection, draft: Draft, now: datetime) -> Lease:
 
 def _taken(draft: Draft) -> ConflictError:
     return ConflictError(
-        f"a lease that expired is taken up again if nobody has the shape but shape {draft.shape_id} is with someone "
-        f"else now; draft {draft.id} is kept: claim the shape when it is free"
+        "labels of a lease that has ended count if nobody else has the shape but someone else has this one now; draft "
+        f"{draft.id} is kept: claim the shape when it is free"
     )
 
 

@@ -154,8 +154,10 @@ def take_by_name(connection: Connection, shape_id: int, person_id: int, lease_s:
     """The lease of a free place of a shape that this person may have, or of a shape that wants no more labels."""
     facet = connection.execute(select(t.shape_facet).where(t.shape_facet.c.shape_id == shape_id)).one()
     if facet.state in (ShapeState.NEW, ShapeState.FAILED):
-        raise ConflictError(f"shape {shape_id} has no surface to label yet; it is {facet.state}: preprocess it first")
-    _refuse_second_answer(connection, shape_id, person_id)
+        raise ConflictError(
+            f"a shape needs a surface to be labelled but {facet.source_key} is {facet.state}; preprocess it first"
+        )
+    _refuse_second_answer(connection, facet, person_id)
     place = t.queue_rank
     is_for_them = or_(place.c.person_id.is_(None), place.c.person_id == person_id)
     free = select(place).where(place.c.shape_id == shape_id, place.c.lease_id.is_(None), is_for_them)
@@ -165,7 +167,7 @@ def take_by_name(connection: Connection, shape_id: int, person_id: int, lease_s:
         taken = _take(connection, found, person_id, lease_s, now)
     elif (waits := connection.execute(others).first()) is not None:  # what it wants are labels of those people
         whose = "kept for" if waits.lease_id is None else "with"
-        raise ConflictError(f"shape {shape_id} is {whose} someone else now; take another, or ask an operator")
+        raise ConflictError(f"{facet.source_key} is {whose} someone else now; take another, or ask an operator")
     else:
         values = {
             **told_of(connection, facet.collection_id, shape_id, None),
@@ -178,16 +180,16 @@ def take_by_name(connection: Connection, shape_id: int, person_id: int, lease_s:
         }
         taken = leases.acquire(connection, values, lease_s, now)
     if taken is None:
-        raise ConflictError(f"a shape is in one person's hands at a time but shape {shape_id} is with someone else now")
+        raise ConflictError(f"{facet.source_key} is with someone else now; take another, or ask an operator")
     return taken
 
 
-def _refuse_second_answer(connection: Connection, shape_id: int, person_id: int) -> None:
+def _refuse_second_answer(connection: Connection, facet: Row[Any], person_id: int) -> None:
     """Independent labels are different people's: whoever's is in waits until the round is complete."""
     past = t.lease
-    is_compared = exists().where(t.queue_rank.c.shape_id == shape_id, t.queue_rank.c.round == past.c.round)
+    is_compared = exists().where(t.queue_rank.c.shape_id == facet.shape_id, t.queue_rank.c.round == past.c.round)
     query = select(func.count()).where(
-        past.c.shape_id == shape_id,
+        past.c.shape_id == facet.shape_id,
         past.c.person_id == person_id,
         past.c.outcome == LeaseOutcome.COMPLETED.value,
         past.c.purpose == LeasePurpose.INDEPENDENT.value,
@@ -195,6 +197,6 @@ def _refuse_second_answer(connection: Connection, shape_id: int, person_id: int)
     )
     if connection.execute(query).scalar_one():
         raise ConflictError(
-            f"independent labels must be different people's but this person's of shape {shape_id} is in; "
+            f"independent labels must be different people's but this person's of {facet.source_key} are in; "
             "wait until the others' are"
         )
