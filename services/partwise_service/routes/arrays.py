@@ -23,6 +23,7 @@ from partwise_service.array_responses import (
     safetensors_response,
 )
 from partwise_service.dependencies import Caller, CatalogDep, ScopedShape, WorkspaceDep, visible_shape
+from partwise_service.face_uncertainty import find_uncertainty
 from partwise_service.schemas.base import MAX_ROW_ID, Hash
 from partwise_service.shown_labels import ShownLabels, labels_of_revision, shown_labels
 
@@ -63,6 +64,17 @@ def get_labels(
     tag = entity_tag("labels", found.identity)
     held = not_modified(request, tag)
     return held or safetensors_response(request, {"labels": found.read()}, tag, metadata=found.metadata)
+
+
+@router.get("/shapes/{shape_id}/uncertainty", response_class=Response, responses=SAFETENSORS_RESPONSES)
+def get_uncertainty(request: Request, shape: ScopedShape, workspace: WorkspaceDep) -> Response:
+    """`uncertainty` (m,) float32: how unsure the newest model is of each face, from 0 (sure) to 1 (all parts alike)."""
+    found = find_uncertainty(workspace, shape)
+    if found is None:
+        raise NotFoundError(f"shape {shape.id} has no probabilities on its present mesh; a model must see it first")
+    tag = entity_tag("uncertainty", found.identity)
+    held = not_modified(request, tag)
+    return held or safetensors_response(request, {"uncertainty": found.read()}, tag, metadata=found.metadata)
 
 
 @router.get("/shapes/{shape_id}/thumbnail", response_class=Response, responses=PNG_RESPONSES)

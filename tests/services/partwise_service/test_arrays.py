@@ -8,7 +8,7 @@ from safetensors.numpy import load
 
 from partwise.render.face_picture import face_id_image
 from partwise.render.thumbnail import PICTURE_SIZE
-from partwise.store.block_kinds import PICTURE
+from partwise.store.block_kinds import EVALUATION, PICTURE
 from partwise.store.records import NewBlock, NewRevision, NewStageRun, RevisionKind
 from partwise.testing.spheres import ball
 from partwise.testing.workspaces import publish_meshes
@@ -100,6 +100,29 @@ def test_labels_by_segmentation(annotator, mugs, segmentation, part_id) -> None:
     assert labels.dtype == np.uint16
     np.testing.assert_array_equal(labels, np.full(mugs.meshes["b.off"].n_faces, part_id))
     assert mugs.meshes["b.off"].content_hash().encode() in answer.content[:400]  # the metadata
+
+
+def test_uncertainty_is_the_entropy_of_each_face_as_a_share_of_the_largest(annotator, workspace, mugs) -> None:
+    mesh = mugs.meshes["a.off"]
+    probabilities = np.tile([[1.0, 0.0], [0.5, 0.5], [0.75, 0.25], [0.0, 1.0]], (mesh.n_faces // 4, 1))
+    block = workspace.arrays.write_block(
+        EVALUATION, [{"probabilities": probabilities.astype(np.float16), "part_ids": np.array([1, 2], np.uint16)}]
+    )
+    summary = {"mesh_hash": mesh.content_hash(), "model_version": 1}
+    workspace.catalog.publish_block(
+        NewBlock(block.name, EVALUATION.name, 1, block.n_bytes, block.checksum),
+        [NewStageRun(mugs.ids["a.off"], "evaluate", "k2", 0, summary=summary)],
+    )
+    answer = annotator.get(f"/shapes/{mugs.ids['a.off']}/uncertainty")
+    uncertainty = load(answer.content)["uncertainty"]
+    assert uncertainty.dtype == np.float32
+    np.testing.assert_allclose(uncertainty, np.tile([0, 1, 0.8112781, 0], mesh.n_faces // 4), atol=1e-6)
+    held = {"If-None-Match": answer.headers["etag"]}
+    assert annotator.get(f"/shapes/{mugs.ids['a.off']}/uncertainty", headers=held).status_code == 304
+
+
+def test_no_model_knows_no_uncertainty(admin, mugs) -> None:
+    assert admin.get(f"/shapes/{mugs.other_shape_id}/uncertainty").status_code == 404
 
 
 def test_confirmed_labels_change_their_tag(annotator, workspace, mugs) -> None:
