@@ -1,4 +1,5 @@
 import { type KeyboardEvent, type ReactNode, useId, useLayoutEffect, useRef, useState } from "react";
+import { classes } from "./classes";
 import styles from "./Menu.module.css";
 import { type Alignment, placeBeside } from "./placement";
 
@@ -10,6 +11,8 @@ export interface MenuProps {
   /** MenuItem, MenuChoice, MenuHeading and MenuLine. */
   children: ReactNode;
   alignment?: Alignment;
+  /** "quiet": no frame until it is pointed at. "framed": like a small secondary button. */
+  variant?: "quiet" | "framed";
   /** Of the button, in place of its own looks. */
   className?: string | undefined;
   isDisabled?: boolean;
@@ -23,6 +26,7 @@ export function Menu({
   trigger,
   children,
   alignment = "start",
+  variant = "quiet",
   className,
   isDisabled = false,
 }: MenuProps) {
@@ -51,7 +55,7 @@ export function Menu({
       <button
         ref={button}
         type="button"
-        className={className ?? styles.trigger}
+        className={className ?? classes(styles.trigger, styles[variant])}
         aria-label={trigger === undefined ? undefined : label}
         aria-haspopup="menu"
         aria-expanded={isOpen}

@@ -43,10 +43,12 @@ export interface MenuChoiceProps {
   /** Several may be chosen. */
   isMultiple?: boolean;
   icon?: ReactNode;
+  isDisabled?: boolean;
 }
 
 /** What a menu sets: one of several, or each by itself. */
-export function MenuChoice({ children, isChecked, onSelect, isMultiple = false, icon }: MenuChoiceProps) {
+export function MenuChoice(props: MenuChoiceProps) {
+  const { children, isChecked, onSelect, isMultiple = false, icon, isDisabled = false } = props;
   return (
     // biome-ignore lint/a11y/useAriaPropsSupportedByRole: both roles that it may have support aria-checked
     <button
@@ -55,6 +57,7 @@ export function MenuChoice({ children, isChecked, onSelect, isMultiple = false, 
       aria-checked={isChecked}
       tabIndex={-1}
       className={styles.item}
+      disabled={isDisabled}
       onClick={onSelect}
     >
       <span className={styles.mark}>{icon}</span>

@@ -7,6 +7,7 @@ export { classes } from "./classes";
 export { type Column, DataTable, type DataTableProps } from "./DataTable";
 export { Dialog, type DialogProps } from "./Dialog";
 export { Field, type FieldControl, type FieldProps } from "./Field";
+export { FormDialog, type FormDialogProps } from "./FormDialog";
 export { IconButton, type IconButtonProps } from "./IconButton";
 export { Input, type InputProps } from "./Input";
 export { Menu, type MenuProps } from "./Menu";

@@ -38,7 +38,7 @@ export function StartJob({ collectionId }: { collectionId: number }) {
       <Link href={`${roomAddress(collectionId, "settings")}/export`} className={styles.link}>
         Export labels
       </Link>
-      <Menu label="Start a job" trigger={trigger} alignment="end" className={styles.trigger}>
+      <Menu label="Start a job" trigger={trigger} alignment="end" variant="framed">
         {KINDS.map((kind) => (
           <MenuItem key={kind} onSelect={() => start.mutate(kind)}>
             <span title={JOB_WORDS[kind].meaning}>{JOB_WORDS[kind].name}</span>

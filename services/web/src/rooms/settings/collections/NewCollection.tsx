@@ -1,12 +1,11 @@
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { Plus } from "lucide-react";
-import { type FormEvent, useId, useState } from "react";
+import { useState } from "react";
 import { useLocation } from "wouter";
 import { api, body } from "../../../api/client";
 import { collectionsQuery } from "../../../api/queries";
 import { roomAddress } from "../../../app/rooms";
-import { Button, type ButtonVariant, Dialog, Input, TextArea } from "../../../components";
-import styles from "./NewCollection.module.css";
+import { Button, type ButtonVariant, FormDialog, Input, TextArea } from "../../../components";
 import { partNamesOf } from "./partNames";
 
 /** A button that makes a collection with its first parts, and opens its settings, where files are added. */
@@ -26,7 +25,6 @@ function NewCollectionDialog({ onClose }: { onClose: () => void }) {
   const [name, setName] = useState("");
   const [partText, setPartText] = useState("");
   const parts = partNamesOf(partText);
-  const form = useId();
   const queries = useQueryClient();
   const [, navigate] = useLocation();
   const creation = useMutation({
@@ -38,44 +36,31 @@ function NewCollectionDialog({ onClose }: { onClose: () => void }) {
       navigate(roomAddress(made.id, "settings"));
     },
   });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    creation.mutate();
-  };
-  const footer = (
-    <>
-      <Button onClick={onClose}>Cancel</Button>
-      <Button
-        type="submit"
-        form={form}
-        variant="primary"
-        isBusy={creation.isPending}
-        disabled={name.trim() === "" || parts.length === 0}
-      >
-        Create collection
-      </Button>
-    </>
-  );
   return (
-    <Dialog title="New collection" onClose={onClose} footer={footer}>
-      <form id={form} onSubmit={submit} className={styles.form}>
-        <Input
-          label="Name"
-          value={name}
-          maxLength={200}
-          required
-          onChange={(event) => setName(event.target.value)}
-        />
-        <TextArea
-          label="Parts"
-          hint="One a line, in the order annotators see them. Colours, descriptions and more parts can be set later."
-          error={creation.error?.message}
-          rows={6}
-          value={partText}
-          placeholder={"seat\nback\nleg"}
-          onChange={(event) => setPartText(event.target.value)}
-        />
-      </form>
-    </Dialog>
+    <FormDialog
+      title="New collection"
+      verb="Create collection"
+      isReady={name.trim() !== "" && parts.length > 0}
+      isBusy={creation.isPending}
+      onSubmit={() => creation.mutate()}
+      onClose={onClose}
+    >
+      <Input
+        label="Name"
+        value={name}
+        maxLength={200}
+        required
+        onChange={(event) => setName(event.target.value)}
+      />
+      <TextArea
+        label="Parts"
+        hint="One a line, in the order annotators see them. Colours, descriptions and more parts can be set later."
+        error={creation.error?.message}
+        rows={6}
+        value={partText}
+        placeholder={"seat\nback\nleg"}
+        onChange={(event) => setPartText(event.target.value)}
+      />
+    </FormDialog>
   );
 }

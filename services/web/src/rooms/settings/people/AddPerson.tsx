@@ -1,8 +1,8 @@
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { UserPlus } from "lucide-react";
-import { type FormEvent, useId, useState } from "react";
+import { useState } from "react";
 import { api, body } from "../../../api/client";
-import { Button, Dialog, Input } from "../../../components";
+import { Button, FormDialog, Input } from "../../../components";
 import { peopleQuery } from "../../operations/queries";
 import type { Person } from "./queries";
 
@@ -29,7 +29,6 @@ export function AddPerson({ onAdded }: { onAdded: ((person: Person) => void) | u
 
 function AddDialog({ onClose, onAdded }: { onClose: () => void; onAdded: (person: Person) => void }) {
   const [name, setName] = useState("");
-  const form = useId();
   const queries = useQueryClient();
   const adding = useMutation({
     mutationFn: () => body(api.POST("/api/v1/people", { body: { name: name.trim() } })),
@@ -38,40 +37,24 @@ function AddDialog({ onClose, onAdded }: { onClose: () => void; onAdded: (person
       onAdded(person);
     },
   });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    adding.mutate();
-  };
   return (
-    <Dialog
+    <FormDialog
       title="Add a person"
       size="small"
+      verb="Add"
+      isReady={name.trim() !== ""}
+      isBusy={adding.isPending}
+      onSubmit={() => adding.mutate()}
       onClose={onClose}
-      footer={
-        <>
-          <Button onClick={onClose}>Cancel</Button>
-          <Button
-            type="submit"
-            form={form}
-            variant="primary"
-            isBusy={adding.isPending}
-            disabled={name.trim() === ""}
-          >
-            Add
-          </Button>
-        </>
-      }
     >
-      <form id={form} onSubmit={submit}>
-        <Input
-          label="Name"
-          hint="As colleagues know them: it is shown beside their labels."
-          value={name}
-          maxLength={200}
-          error={adding.error?.message}
-          onChange={(event) => setName(event.target.value)}
-        />
-      </form>
-    </Dialog>
+      <Input
+        label="Name"
+        hint="As colleagues know them: it is shown beside their labels."
+        value={name}
+        maxLength={200}
+        error={adding.error?.message}
+        onChange={(event) => setName(event.target.value)}
+      />
+    </FormDialog>
   );
 }

@@ -1,7 +1,7 @@
 import { useMutation, useQueryClient } from "@tanstack/react-query";
-import { type FormEvent, useId, useState } from "react";
+import { useState } from "react";
 import { api, body, type Schemas } from "../../../api/client";
-import { Button, Dialog } from "../../../components";
+import { FormDialog } from "../../../components";
 import { NewTokenFields, type TokenWish, USUAL_WISH } from "./NewTokenFields";
 import type { Person } from "./queries";
 import { SecretOnce } from "./SecretOnce";
@@ -9,40 +9,23 @@ import { SecretOnce } from "./SecretOnce";
 /** Makes a token for a person: role, collections and how long it is good; then shows its secret, once. */
 export function IssueTokenDialog({ person, onClose }: { person: Person; onClose: () => void }) {
   const [wish, setWish] = useState<TokenWish>(USUAL_WISH);
-  const form = useId();
   const queries = useQueryClient();
   const issuing = useMutation({
     mutationFn: () => body(api.POST("/api/v1/tokens", { body: requestOf(person, wish) })),
     onSuccess: () => queries.invalidateQueries({ queryKey: ["tokens"] }),
   });
   if (issuing.data) return <SecretOnce issued={issuing.data} onClose={onClose} />;
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    issuing.mutate();
-  };
   return (
-    <Dialog
+    <FormDialog
       title={`New token for ${person.name}`}
+      verb="Make token"
+      isReady={wish.scope === null || wish.scope.length > 0}
+      isBusy={issuing.isPending}
+      onSubmit={() => issuing.mutate()}
       onClose={onClose}
-      footer={
-        <>
-          <Button onClick={onClose}>Cancel</Button>
-          <Button
-            type="submit"
-            form={form}
-            variant="primary"
-            isBusy={issuing.isPending}
-            disabled={wish.scope !== null && wish.scope.length === 0}
-          >
-            Make token
-          </Button>
-        </>
-      }
     >
-      <form id={form} onSubmit={submit}>
-        <NewTokenFields wish={wish} onChange={setWish} error={issuing.error?.message ?? null} />
-      </form>
-    </Dialog>
+      <NewTokenFields wish={wish} onChange={setWish} error={issuing.error?.message ?? null} />
+    </FormDialog>
   );
 }
 

@@ -1,5 +1,5 @@
-import { type FormEvent, useState } from "react";
-import { Button, Dialog, TextArea } from "../../../components";
+import { useState } from "react";
+import { FormDialog, TextArea } from "../../../components";
 import styles from "./SkipDialog.module.css";
 
 const REASONS = [
@@ -22,8 +22,7 @@ export function SkipDialog(props: {
   const [note, setNote] = useState("");
   const [isBusy, setBusy] = useState(false);
   const [error, setError] = useState<string | null>(null);
-  const submit = async (event: FormEvent) => {
-    event.preventDefault();
+  const submit = async () => {
     const words = [reason === OTHER ? "" : reason, note.trim()].filter((each) => each !== "").join(": ");
     if (words === "") {
       setError("Say in a few words what is wrong with it.");
@@ -38,39 +37,32 @@ export function SkipDialog(props: {
     }
   };
   return (
-    <Dialog
+    <FormDialog
       title={`Skip ${name}`}
       size="small"
+      verb="Skip this shape"
+      isBusy={isBusy}
+      onSubmit={() => void submit()}
       onClose={onClose}
-      footer={
-        <>
-          <Button onClick={onClose}>Cancel</Button>
-          <Button variant="primary" type="submit" form="skip" isBusy={isBusy}>
-            Skip this shape
-          </Button>
-        </>
-      }
     >
-      <form id="skip" className={styles.form} onSubmit={(event) => void submit(event)}>
-        <fieldset className={styles.reasons}>
-          <legend className={styles.legend}>You will not get it again. What is wrong with it?</legend>
-          {REASONS.map((each) => (
-            <label key={each} className={styles.reason}>
-              <input type="radio" name="reason" checked={reason === each} onChange={() => setReason(each)} />
-              {each}
-            </label>
-          ))}
-        </fieldset>
-        <TextArea
-          label="Note"
-          hint="For whoever looks after the collection"
-          error={error}
-          rows={2}
-          maxLength={LONGEST}
-          value={note}
-          onChange={(event) => setNote(event.target.value)}
-        />
-      </form>
-    </Dialog>
+      <fieldset className={styles.reasons}>
+        <legend className={styles.legend}>You will not get it again. What is wrong with it?</legend>
+        {REASONS.map((each) => (
+          <label key={each} className={styles.reason}>
+            <input type="radio" name="reason" checked={reason === each} onChange={() => setReason(each)} />
+            {each}
+          </label>
+        ))}
+      </fieldset>
+      <TextArea
+        label="Note"
+        hint="For whoever looks after the collection"
+        error={error}
+        rows={2}
+        maxLength={LONGEST}
+        value={note}
+        onChange={(event) => setNote(event.target.value)}
+      />
+    </FormDialog>
   );
 }

@@ -75,7 +75,7 @@ function StartMenu({ open, shelf, refinement, hasConfirmed }: RefinePanelProps) 
   return (
     <Menu
       label="Start from"
-      className={styles.start}
+      variant="framed"
       trigger={
         <>
           Start from <ChevronDown aria-hidden="true" />
