@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from partwise.errors import NotFoundError
 from partwise.store.catalog import Catalog
-from partwise.store.records import Answer, Consensus, Role
+from partwise.store.records import Answer, Consensus, Effort, Role
 from partwise.store.reviews import Review, ReviewReason
 from partwise.workspace.confirming import choose_answer
 from partwise_service.answering import AnswerRoute
@@ -22,7 +22,7 @@ from partwise_service.schemas.checks import (
     DisagreementOut,
     IndependentLabels,
 )
-from partwise_service.schemas.shapes import RevisionOut
+from partwise_service.schemas.shapes import EffortOut, RevisionOut
 
 MAX_PAGE = 500
 MAX_DISAGREEMENTS = 100
@@ -72,13 +72,14 @@ def list_disagreements(
     limit: Annotated[int, Query(ge=1, le=MAX_DISAGREEMENTS)] = 50,
 ) -> Page[DisagreementOut]:
     """Shapes whose independent labels differ too much, and wait for a reviewer, oldest first."""
-    found = catalog.open_reviews(collection.id, after=after, limit=limit, reason=ReviewReason.DISAGREEMENT)
+    found = catalog.open_reviews(collection.id, after=after, limit=limit, reasons=(ReviewReason.DISAGREEMENT,))
     shapes, names = catalog.shapes_by_id([review.shape_id for review in found]), _names(catalog)
     items = []
     for review in found:
         consensus = _settled(catalog, review)
         if consensus is not None:  # labels moved to another mesh leave what was compared behind
-            answers = [_told(each, consensus, names) for each in _answers(catalog, consensus)]
+            efforts = catalog.answer_efforts(consensus.answer_ids)
+            answers = [_told(each, consensus, names, efforts.get(each.id)) for each in _answers(catalog, consensus)]
             items.append(DisagreementOut.of(review, shapes[review.shape_id].source_key, consensus, answers))
     return Page(items=items, next=str(found[-1].id) if len(found) == limit else None)
 
@@ -127,7 +128,7 @@ def _answers(catalog: Catalog, consensus: Consensus) -> list[Answer]:
     return [each for each in catalog.answers(consensus.shape_id) if each.id in consensus.answer_ids]
 
 
-def _told(answer: Answer, consensus: Consensus, names: dict[int, str]) -> IndependentLabels:
+def _told(answer: Answer, consensus: Consensus, names: dict[int, str], effort: Effort | None) -> IndependentLabels:
     return IndependentLabels(
         id=answer.id,
         person_id=answer.person_id,
@@ -135,6 +136,7 @@ def _told(answer: Answer, consensus: Consensus, names: dict[int, str]) -> Indepe
         mesh_hash=answer.mesh_hash,
         is_medoid=answer.id == consensus.medoid_id,
         created_at=answer.created_at,
+        effort=EffortOut.of(effort),
     )
 
 

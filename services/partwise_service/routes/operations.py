@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query
 
 from partwise.store.catalog import Catalog
 from partwise.store.records import Job, JobState, StageCount
+from partwise.store.reviews import FOR_REVIEWERS
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE, REFINE
 from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import Workspace
@@ -31,7 +32,6 @@ from partwise_service.schemas.operations import (
     WorkerFigures,
 )
 
-MAX_REVIEWS = 1_000
 MAX_WORKERS = 100
 WINDOW = timedelta(minutes=15)
 router = APIRouter(route_class=AnswerRoute, tags=["operations"])
@@ -84,7 +84,7 @@ def _measured(workspace: Workspace, collection_id: int) -> OpsOut:
         model_version=None if model is None else model.version,
         score_name=score_name,
         freshness=_freshness(catalog, collection_id, score_name),
-        open_reviews=len(catalog.open_reviews(collection_id, limit=MAX_REVIEWS)),
+        open_reviews=catalog.count_open_reviews(collection_id, reasons=FOR_REVIEWERS),
         blocks=[BlockFigures(kind=each.kind, blocks=each.n_blocks, bytes=each.n_bytes) for each in blocks],
         disk=DiskFigures(
             database_bytes=catalog.database_bytes(), array_bytes=array_bytes, free_bytes=_free_bytes(workspace)

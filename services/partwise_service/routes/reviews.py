@@ -1,5 +1,6 @@
 """/collections/{collection_id}/reviews, /shapes/{shape_id}/reviews: labels that wait for a second look."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -11,9 +12,20 @@ from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape, shapes_of
 from partwise_service.schemas.accepts import BulkRejection, RefusedOut, Rejected
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
-from partwise_service.schemas.shapes import Rejection, ReviewOut, ReviewsOut
+from partwise_service.schemas.shapes import (
+    EffortOut,
+    OpenReviewOut,
+    Rejection,
+    ReviewCount,
+    ReviewOut,
+    ReviewsOut,
+)
 
 MAX_PAGE = 500
+EVERY_REASON = tuple(ReviewReason)
+Reasons = Annotated[
+    tuple[ReviewReason, ...], Query(alias="reason", max_length=len(EVERY_REASON), description="Again for more of them.")
+]
 router = APIRouter(route_class=AnswerRoute, tags=["reviews"])
 
 
@@ -24,12 +36,20 @@ def list_open_reviews(
     catalog: CatalogDep,
     after: Annotated[int, Query(ge=0, le=MAX_ROW_ID)] = 0,
     limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 100,
-    reason: ReviewReason | None = None,
-) -> Page[ReviewOut]:
-    """Labels of the collection that wait for someone to look at them, of one reason if given, oldest first."""
-    found = catalog.open_reviews(collection.id, after=after, limit=limit, reason=reason)
+    reasons: Reasons = EVERY_REASON,
+) -> Page[OpenReviewOut]:
+    """Labels of the collection that wait for someone to look at them, of these reasons if given, oldest first."""
+    found = catalog.open_reviews(collection.id, after=after, limit=limit, reasons=reasons)
     next_after = str(found[-1].id) if len(found) == limit else None
-    return Page(items=[ReviewOut.of(review) for review in found], next=next_after)
+    return Page(items=_with_efforts(catalog, found), next=next_after)
+
+
+@router.get("/collections/{collection_id}/reviews/count")
+def count_open_reviews(
+    _caller: Reviewer, collection: ScopedCollection, catalog: CatalogDep, reasons: Reasons = EVERY_REASON
+) -> ReviewCount:
+    """How many the list of them has on all its pages."""
+    return ReviewCount(n_reviews=catalog.count_open_reviews(collection.id, reasons=reasons))
 
 
 @router.get("/shapes/{shape_id}/reviews")
@@ -74,6 +94,14 @@ def reject_many(
         except (ConflictError, NotFoundError) as error:
             refused.append(RefusedOut(shape_id=shape.id, why=str(error)))
     return Rejected(rejected=rejected, refused=refused)
+
+
+def _with_efforts(catalog: LabelCatalog, found: Sequence[Review]) -> list[OpenReviewOut]:
+    efforts = catalog.revision_efforts([review.revision_id for review in found])
+    return [
+        OpenReviewOut(**ReviewOut.of(review).model_dump(), effort=EffortOut.of(efforts.get(review.revision_id)))
+        for review in found
+    ]
 
 
 def _sent_back(catalog: LabelCatalog, shape_id: int, person_id: int, note: str, for_author: bool) -> Review:

@@ -5,6 +5,7 @@ from datetime import date, datetime
 from partwise.store.records import BlindCheck, BlindCheckDay, Consensus
 from partwise.store.reviews import Review
 from partwise_service.schemas.base import Answer, AnyId, Request
+from partwise_service.schemas.shapes import EffortOut
 
 
 class ClosenessOut(Answer):
@@ -83,7 +84,7 @@ class CheckedPeople(Answer):
 
 class IndependentLabels(Answer):
     """One person's labels of a round; they are at /shapes/{shape_id}/answers/{id}/labels. is_medoid : the closest to
-    the others, which are the shape's as long as nobody decides otherwise.
+    the others, which are the shape's as long as nobody decides otherwise. effort : null where nobody noted it.
     """
 
     id: int
@@ -92,6 +93,7 @@ class IndependentLabels(Answer):
     mesh_hash: str
     is_medoid: bool
     created_at: datetime
+    effort: EffortOut | None
 
 
 class DisagreementOut(ClosenessOut):

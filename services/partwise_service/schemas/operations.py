@@ -77,7 +77,7 @@ class WorkerFigures(Answer):
 class OpsOut(Answer):
     """As it was at `measured_at`, some seconds ago at most.
 
-    states : shapes by state. failures : failed runs by kind. open_reviews : counted up to 1,000.
+    states : shapes by state. failures : failed runs by kind. open_reviews : that wait for a reviewer.
     score_name : what the queue is ranked by; freshness : which models those scores are of, newest first.
     """
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, JsonValue
 
-from partwise.store.records import LabelRevision, ListedShape, Mesh, RevisionKind, Shape, ShapeState, ShapeTile
+from partwise.store.records import Effort, LabelRevision, ListedShape, Mesh, RevisionKind, Shape, ShapeState, ShapeTile
 from partwise.store.reviews import Review, ReviewOutcome, ReviewReason
 from partwise.workspace.provenance import ProvenanceCard
 from partwise_service.schemas.base import NO_NUL, Answer, Request
@@ -178,6 +178,28 @@ class ReviewOut(Answer):
 
 class ReviewsOut(Answer):
     items: list[ReviewOut]
+
+
+class EffortOut(Answer):
+    """What labels took whoever made them. active_s : seconds at work, without pauses. n_clicks : presses that count."""
+
+    active_s: float
+    n_clicks: int
+
+    @classmethod
+    def of(cls, effort: Effort | None) -> "EffortOut | None":
+        """The effort as it is told; None if nobody noted it."""
+        return None if effort is None else cls.model_validate(effort)
+
+
+class OpenReviewOut(ReviewOut):
+    """Labels that wait, with what they took. effort : null where nobody noted it, as of labels from files."""
+
+    effort: EffortOut | None
+
+
+class ReviewCount(Answer):
+    n_reviews: int
 
 
 class Rejection(Request):

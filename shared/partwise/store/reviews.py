@@ -46,6 +46,10 @@ class ReviewReason(StrEnum):
     REWORK = "rework"
 
 
+FOR_REVIEWERS = tuple(reason for reason in ReviewReason if reason is not ReviewReason.REWORK)
+"""What a reviewer decides; labels that were sent back wait for whoever labels them anew."""
+
+
 class ReviewOutcome(StrEnum):
     """How a review ended.
 

@@ -113,6 +113,7 @@ def test_disagreements_are_listed_with_what_everyone_said(reviewer, collection, 
     assert (found["shape_id"], found["source_key"], found["area_agreement"]) == (disputed, "a.off", 0)
     assert [each["person_name"] for each in found["answers"]] == ["ann", "ben"]
     assert [each["is_medoid"] for each in found["answers"]].count(True) == 1
+    assert all(each["effort"].keys() == {"active_s", "n_clicks"} for each in found["answers"])
     labels = [
         set(load(reviewer.get(f"/shapes/{disputed}/answers/{each['id']}/labels").content)["labels"].tolist())
         for each in found["answers"]

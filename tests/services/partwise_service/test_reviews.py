@@ -23,6 +23,19 @@ def test_what_waits_is_listed(reviewer, mugs, waiting) -> None:
     assert [(each["shape_id"], each["reason"]) for each in listed["items"]] == [(mugs.ids["a.off"], "check")]
 
 
+def test_what_waits_says_what_it_took_where_that_is_known(reviewer, mugs, waiting) -> None:
+    path = f"/collections/{mugs.collection_id}/reviews"
+    assert [each["effort"] for each in reviewer.get(path).json()["items"]] == [None]
+
+
+def test_what_waits_is_counted_and_paged_by_reason(reviewer, mugs, waiting) -> None:
+    path = f"/collections/{mugs.collection_id}/reviews"
+    for reasons, n in ({"reason": ["check", "schema"]}, 1), ({"reason": ["rework", "schema"]}, 0), ({}, 1):
+        assert reviewer.get(f"{path}/count", params=reasons).json() == {"n_reviews": n}
+        assert len(reviewer.get(path, params=reasons).json()["items"]) == n
+    assert reviewer.get(path, params={"reason": "boredom"}).status_code == 422
+
+
 def test_accepting_resolves_a_review(reviewer, mugs, waiting) -> None:
     accepted = reviewer.post(f"{waiting}/accept").json()
     assert accepted["outcome"] == "accepted"
@@ -55,6 +68,7 @@ def test_a_foreign_review_is_not_found(issue, mugs, waiting) -> None:
 
 
 def test_annotators_review_nothing(annotator, mugs, waiting) -> None:
-    assert annotator.get(f"/collections/{mugs.collection_id}/reviews").status_code == 403
+    for path in ("reviews", "reviews/count"):
+        assert annotator.get(f"/collections/{mugs.collection_id}/{path}").status_code == 403
     assert annotator.post(f"{waiting}/accept").status_code == 403
     assert annotator.post(f"{waiting}/reject", json={"note": "no"}).status_code == 403

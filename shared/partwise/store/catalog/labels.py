@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import UInt16
 
-from partwise.store.records import LabelRevision, NewRevision, RevisionKind
+from partwise.store.records import Effort, LabelRevision, NewRevision, RevisionKind
 from partwise.store.reviews import NewReview, Review, ReviewReason
 
 SHOWN_KINDS = (RevisionKind.HUMAN, RevisionKind.IMPORTED)
@@ -65,6 +65,14 @@ class LabelCatalog(Protocol):
         """
         ...
 
+    def revision_efforts(self, revision_ids: SizedIterable[int]) -> Mapping[int, Effort]:
+        """What these revisions took their authors; those that were not drawn here, or not counted, are left out."""
+        ...
+
+    def answer_efforts(self, answer_ids: SizedIterable[int]) -> Mapping[int, Effort]:
+        """As `revision_efforts`, of answers."""
+        ...
+
     def add_review(self, revision_id: int, review: NewReview) -> Review:
         """Have someone look at labels before they are trained on. An open review of the same reason stays the one.
 
@@ -73,9 +81,20 @@ class LabelCatalog(Protocol):
         ...
 
     def open_reviews(
-        self, collection_id: int, *, after: int = 0, limit: int = 1000, reason: ReviewReason | None = None
+        self,
+        collection_id: int,
+        *,
+        after: int = 0,
+        limit: int = 1000,
+        reasons: SizedIterable[ReviewReason] = tuple(ReviewReason),
     ) -> Sequence[Review]:
-        """A page of the reviews that wait for someone, of one reason if given, by review id."""
+        """A page of the reviews that wait for someone, of these reasons, by review id."""
+        ...
+
+    def count_open_reviews(
+        self, collection_id: int, *, reasons: SizedIterable[ReviewReason] = tuple(ReviewReason)
+    ) -> int:
+        """How many reviews `open_reviews` has on all its pages together."""
         ...
 
     def reviews(self, shape_id: int) -> Sequence[Review]:

@@ -20,7 +20,7 @@ from partwise.store.records.drafts import Draft, DraftOutcome, NewDraft, StoredS
 from partwise.store.records.events import Event, EventBounds, EventKind, NewEvent
 from partwise.store.records.figures import BlockTotal, LeaseCounts, ModelRound, PersonFigures
 from partwise.store.records.jobs import BACKGROUND_KINDS, COALESCED_KINDS, Job, JobKind, JobState, Progress
-from partwise.store.records.labels import LabelRevision, NewRevision, RevisionKind
+from partwise.store.records.labels import Effort, LabelRevision, NewRevision, RevisionKind
 from partwise.store.records.leases import (
     DEFAULT_RANKING,
     MAX_HELD,
@@ -89,6 +89,7 @@ __all__ = [
     "Consensus",
     "Draft",
     "DraftOutcome",
+    "Effort",
     "Embedding",
     "Event",
     "EventBounds",

@@ -53,3 +53,11 @@ class LabelRevision:
     sha256: str
     created_at: datetime
     origin: RevisionOrigin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """What labels took whoever made them: seconds at work, without pauses, and presses."""
+
+    active_s: float
+    n_clicks: int

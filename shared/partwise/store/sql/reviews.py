@@ -3,11 +3,12 @@
 An open review is always of the newest human or imported labels of its shape: what takes their place resolves it.
 """
 
+from collections.abc import Collection as SizedIterable
 from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Row, func, insert, select, update
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.store import tables as t
@@ -76,18 +77,23 @@ def _refuse_unfit(connection: Connection, revision_id: int) -> Row[Any, Any, Any
 
 
 def open_reviews(
-    connection: Connection, collection_id: int, after: int, limit: int, reason: ReviewReason | None
+    connection: Connection, collection_id: int, after: int, limit: int, reasons: SizedIterable[ReviewReason]
 ) -> Sequence[Review]:
     schema_version(connection, collection_id)
-    query = (
-        select(t.review)
-        .where(t.review.c.collection_id == collection_id, t.review.c.resolved_at.is_(None), t.review.c.id > after)
-        .order_by(t.review.c.id)
-        .limit(limit)
-    )
-    if reason is not None:
-        query = query.where(t.review.c.reason == reason.value)
-    return [_review(row) for row in connection.execute(query)]
+    query = select(t.review).where(*_is_open(collection_id, reasons), t.review.c.id > after)
+    return [_review(row) for row in connection.execute(query.order_by(t.review.c.id).limit(limit))]
+
+
+def count_open_reviews(connection: Connection, collection_id: int, reasons: SizedIterable[ReviewReason]) -> int:
+    schema_version(connection, collection_id)
+    query = select(func.count()).select_from(t.review).where(*_is_open(collection_id, reasons))
+    return connection.execute(query).scalar_one()
+
+
+def _is_open(collection_id: int, reasons: SizedIterable[ReviewReason]) -> list[ColumnElement[bool]]:
+    review = t.review.c
+    is_of_reason = [] if set(reasons) == set(ReviewReason) else [review.reason.in_([each.value for each in reasons])]
+    return [review.collection_id == collection_id, review.resolved_at.is_(None), *is_of_reason]
 
 
 def reviews(connection: Connection, shape_id: int) -> Sequence[Review]:

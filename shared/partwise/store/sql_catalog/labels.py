@@ -10,7 +10,7 @@ from partwise.store import records as r
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.engine import reading, writing
 from partwise.store.reviews import NewReview, Review, ReviewReason
-from partwise.store.sql import labels, reviews
+from partwise.store.sql import efforts, labels, reviews
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -55,15 +55,34 @@ class SqlLabelCatalog(SqlBase):
                 connection, collection_id, kinds, after, limit, leave_out_reviews=leave_out_reviews
             )
 
+    def revision_efforts(self, revision_ids: SizedIterable[int]) -> Mapping[int, r.Effort]:
+        with reading(self._engine) as connection:
+            return efforts.revision_efforts(connection, sorted(revision_ids))
+
+    def answer_efforts(self, answer_ids: SizedIterable[int]) -> Mapping[int, r.Effort]:
+        with reading(self._engine) as connection:
+            return efforts.answer_efforts(connection, sorted(answer_ids))
+
     def add_review(self, revision_id: int, review: NewReview) -> Review:
         with writing(self._engine) as connection:
             return reviews.open_review(connection, revision_id, review, self._clock())
 
     def open_reviews(
-        self, collection_id: int, *, after: int = 0, limit: int = 1000, reason: ReviewReason | None = None
+        self,
+        collection_id: int,
+        *,
+        after: int = 0,
+        limit: int = 1000,
+        reasons: SizedIterable[ReviewReason] = tuple(ReviewReason),
     ) -> Sequence[Review]:
         with reading(self._engine) as connection:
-            return reviews.open_reviews(connection, collection_id, after, limit, reason)
+            return reviews.open_reviews(connection, collection_id, after, limit, reasons)
+
+    def count_open_reviews(
+        self, collection_id: int, *, reasons: SizedIterable[ReviewReason] = tuple(ReviewReason)
+    ) -> int:
+        with reading(self._engine) as connection:
+            return reviews.count_open_reviews(connection, collection_id, reasons)
 
     def reviews(self, shape_id: int) -> Sequence[Review]:
         with reading(self._engine) as connection:

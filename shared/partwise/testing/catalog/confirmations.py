@@ -13,6 +13,7 @@ from partwise.store.records import (
     Closeness,
     Collection,
     DraftOutcome,
+    Effort,
     EventKind,
     JobKind,
     JobState,
@@ -272,9 +273,23 @@ class ConfirmationConformance:
         lease = claim(catalog, collection, catalog.add_person("ann"))
         draft = blank_draft(catalog, lease)
         cost = AnnotationCost(strokes=2, commands=1, undos=1, redos=0, active_s=12.5, n_idle_gaps=0)
-        catalog.confirm_draft(NewConfirmation(draft.id, draft.person_id, 0, np.ones(6, int), 1, cost=cost))
+        made = catalog.confirm_draft(NewConfirmation(draft.id, draft.person_id, 0, np.ones(6, int), 1, cost=cost))
         confirmed = catalog.draft(draft.id)
         assert (confirmed.active_s, confirmed.n_clicks) == (12.5, 4)
+        assert made.revision_id is not None
+        assert catalog.revision_efforts([made.revision_id, 99]) == {made.revision_id: Effort(12.5, 4)}
+
+    def test_what_a_label_put_aside_cost_is_on_record(self, catalog: Catalog) -> None:
+        _, leases = _two_leased(catalog, labels_per_shape=2)
+        draft = blank_draft(catalog, leases[0])
+        cost = AnnotationCost(strokes=3, commands=0, undos=0, redos=0, active_s=4.0, n_idle_gaps=0)
+        made = catalog.confirm_draft(NewConfirmation(draft.id, draft.person_id, 0, np.ones(6, int), 1, cost=cost))
+        assert made.answer_id is not None
+        assert catalog.answer_efforts([made.answer_id, 99]) == {made.answer_id: Effort(4.0, 3)}
+
+    def test_labels_that_nobody_drew_here_cost_nothing_known(self, catalog: Catalog) -> None:
+        _, (shape_id,) = ready_shapes(catalog, 1)
+        assert catalog.revision_efforts([label(catalog, shape_id).id]) == {}
 
     def test_shares_are_shares(self, catalog: Catalog) -> None:  # noqa: ARG002 # the suite's signature
         for wrong in ((1.5, 0.0, 0.0), (0.0, -0.1, 0.0), (0.0, 0.0, float("nan"))):

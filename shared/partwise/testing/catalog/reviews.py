@@ -125,3 +125,17 @@ class ReviewConformance:
             made.append(catalog.add_review(label(catalog, shape_id).id, _MAP_BACK))
         first = catalog.open_reviews(collection.id, limit=2)
         assert [*first, *catalog.open_reviews(collection.id, after=first[-1].id)] == made
+        assert catalog.count_open_reviews(collection.id) == 3
+
+    def test_open_reviews_of_some_reasons_are_paged_and_counted(self, catalog: Catalog) -> None:
+        collection, ids = add_collection(catalog, 4)
+        made = []
+        for shape_id, reason in zip(ids, (ReviewReason.CHECK, ReviewReason.SCHEMA) * 2, strict=True):
+            publish_mesh(catalog, shape_id)
+            made.append(catalog.add_review(label(catalog, shape_id).id, NewReview(reason)))
+        asked = (ReviewReason.SCHEMA, ReviewReason.REWORK)
+        (first,) = catalog.open_reviews(collection.id, limit=1, reasons=asked)
+        assert [first, *catalog.open_reviews(collection.id, after=first.id, reasons=asked)] == made[1::2]
+        counts = {reason: catalog.count_open_reviews(collection.id, reasons=(reason,)) for reason in ReviewReason}
+        assert counts == {reason: sum(each.reason is reason for each in made) for reason in ReviewReason}
+        assert catalog.open_reviews(collection.id, reasons=()) == []
