@@ -11,8 +11,10 @@ import pytest
 import ray
 
 from partwise.store.records import FailureKind
+from partwise.workspace.figures import CollectionFigures
+from partwise.workspace.progress import RunProgress
 from partwise_workers.events import ActorRestarted, InFlight, StageDone, StageFailed
-from partwise_workers.metrics import RunMetrics
+from partwise_workers.metrics import CollectionMetrics, RunMetrics
 
 POLL_S, PATIENCE_S = 0.5, 60.0
 EVENTS = (
@@ -25,23 +27,28 @@ EVENTS = (
     ActorRestarted(None),
     InFlight(2),
 )
-SAMPLE = re.compile(r"^ray_(partwise_\w+)\{(.*)\} (\S+)$", re.MULTILINE)
+FIGURES = CollectionFigures(7, 2, 90.0, 0.25, 3, 12.5, 0.4, 0.9)
+SAMPLE = re.compile(r"^ray_(\w+)\{(.*)\} (\S+)$", re.MULTILINE)
 LABEL = re.compile(r'(\w+)="([^"]*)"')
 Value = Callable[..., float]
 
 
 @pytest.fixture(scope="module")
 def samples(local_ray: None) -> Iterator[list[tuple[str, dict[str, str], float]]]:
-    """Name, labels and value of every sample that a node exports of ours, once they have arrived."""
+    """Name, labels and value of every sample that a node exports, once ours and Ray's own have arrived."""
     metrics = RunMetrics()
     for event in EVENTS:
         metrics(event)
+    metrics.on_progress(RunProgress(5, 1, 9))
+    of_collections = CollectionMetrics()
+    of_collections.tell("mugs", FIGURES)
+    of_collections.tell_stored(1_000)
     (node,) = ray.nodes()
     url = f"http://{node['NodeManagerAddress']}:{node['MetricsExportPort']}/metrics"
     for _ in range(int(PATIENCE_S / POLL_S)):
         text = urllib.request.urlopen(url, timeout=PATIENCE_S).read().decode()
         found = [(name, dict(LABEL.findall(labels)), float(value)) for name, labels, value in SAMPLE.findall(text)]
-        if any(labels.get("stage") == "alpha" for _, labels, _ in found):
+        if {"partwise_shapes_done_total", "partwise_stored_bytes", "node_mem_used"} <= {name for name, _, _ in found}:
             yield found
             return
         threading.Event().wait(POLL_S)
@@ -83,14 +90,36 @@ def test_restarts_are_counted_by_what_ended_the_process(value: Value) -> None:
     assert value("partwise_actor_restarts_total", kind="recycled") == 1
 
 
+def test_what_the_run_has_yet_to_finish_is_told(value: Value) -> None:
+    assert value("partwise_shapes_left") == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("queue_free", 7),
+        ("queue_held", 2),
+        ("queue_oldest_seconds", 90),
+        ("scores_fresh_share", 0.25),
+        ("model_version", 3),
+        ("train_seconds", 12.5),
+        ("mean_score", 0.4),
+        ("blind_agreement", 0.9),
+    ],
+)
+def test_figures_are_told_by_collection(value: Value, name: str, expected: float) -> None:
+    assert value(f"partwise_{name}", collection="mugs") == expected
+
+
 def test_nothing_is_labelled_by_shape_run_or_person(samples: list[tuple[str, dict[str, str], float]]) -> None:
-    ours = {label for _, labels, _ in samples for label in labels if label[0].islower() and "otel" not in label}
-    assert ours == {"stage", "kind", "le"}
+    of_ours = [labels for name, labels, _ in samples if name.startswith("partwise_")]
+    ours = {label for labels in of_ours for label in labels if label[0].islower() and "otel" not in label}
+    assert ours == {"stage", "kind", "le", "collection"}
 
 
 def test_the_dashboard_asks_for_metrics_that_there_are(samples: list[tuple[str, dict[str, str], float]]) -> None:
     dashboard = (Path(__file__).parents[2] / "deploy" / "grafana" / "partwise-workers.json").read_text(encoding="utf-8")
     queries = [target["expr"] for panel in json.loads(dashboard)["panels"] for target in panel["targets"]]
-    asked = {name for query in queries for name in re.findall(r"ray_(partwise_\w+)", query)}
-    assert asked
+    asked = {name for query in queries for name in re.findall(r"ray_(\w+)", query)}
+    assert len(asked) > 10
     assert asked <= {name for name, _, _ in samples}

@@ -175,6 +175,10 @@ def run_tasks(
             metrics(event)
             on_event(event)
 
+        def tell_progress(run: RunProgress) -> None:
+            metrics.on_progress(run)
+            on_progress(run)
+
         ws = workspace
         runner = StageRunner(ws.catalog, ws.arrays, ws.array_url, stages, ws.config.workers, also_publish, tell)
-        return runner.run(tasks, n_total, on_progress)
+        return runner.run(tasks, n_total, tell_progress)

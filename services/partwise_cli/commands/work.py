@@ -62,6 +62,7 @@ def work(
     """Do the jobs that wait, as they come.  [dim]partwise work ws[/dim]"""
     from partwise.workspace.workspace import open_workspace
     from partwise_cli.jobs.cluster import Cluster
+    from partwise_cli.jobs.figures import Figures
     from partwise_cli.jobs.handlers import HANDLERS
     from partwise_cli.jobs.worker import Worker
 
@@ -72,11 +73,12 @@ def work(
         cluster = Cluster(interrupt_on_sigterm)
         worker = Worker(workspace, HANDLERS, cluster, kinds=chosen, collection_id=collection_id, on_job=_tell)
         typer.echo(f"worker {worker.owner} waits for jobs; Ctrl-C ends it", err=True)
-        if once:
-            worker.run(once=True)
-            return
-        with suppress(KeyboardInterrupt):  # how it is meant to end
-            worker.run()
+        with Figures(workspace, cluster):
+            if once:
+                worker.run(once=True)
+                return
+            with suppress(KeyboardInterrupt):  # how it is meant to end
+                worker.run()
 
 
 def _kinds(text: str) -> "list[JobKind]":

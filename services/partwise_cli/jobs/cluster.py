@@ -27,6 +27,10 @@ class Cluster:
             self._resources = resources.pop_all()
         self._connected()
 
+    @property
+    def is_connected(self) -> bool:
+        return self._resources is not None
+
     def close(self) -> None:
         """Lets go of it: the next job starts another."""
         resources, self._resources = self._resources, None
