@@ -36,10 +36,10 @@ def collection_figures(workspace: Workspace, collection: Collection, now: dateti
         n_held=depth.n_held,
         oldest_s=0.0 if depth.oldest_at is None else (now - depth.oldest_at).total_seconds(),
         fresh_share=scored.get(newest.version, 0) / sum(scored.values()) if newest and scored else None,
-        model_version=newest and newest.version,
-        train_s=newest and newest.train_s,
-        mean_score=newest and newest.mean_score,
-        agreement=newest and newest.area_agreement,
+        model_version=None if newest is None else newest.version,
+        train_s=None if newest is None else newest.train_s,
+        mean_score=None if newest is None else newest.mean_score,
+        agreement=None if newest is None else newest.area_agreement,
     )
 
 
