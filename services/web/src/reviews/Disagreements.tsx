@@ -1,31 +1,37 @@
-import { useQuery } from "@tanstack/react-query";
+import { useInfiniteQuery } from "@tanstack/react-query";
 import { Link } from "wouter";
 import { roomAddress } from "../app/rooms";
 import { Badge, Button, Notice, Time, useToast } from "../components";
 import { percent } from "../components/numbers";
+import { LoadMore } from "../rooms/operations/LoadMore";
 import { Asked } from "./Asked";
 import { LabelsPicture } from "./LabelsPicture";
 import styles from "./Reviews.module.css";
 import { type Disagreement, disagreementsQuery, useDecision } from "./reviewRequests";
+import { effortWords } from "./reviewWords";
 
 /** Shapes that several people labelled too differently, for somebody to say whose labels are right. */
 export function Disagreements({ collectionId }: { collectionId: number }) {
-  const query = useQuery(disagreementsQuery(collectionId));
+  const query = useInfiniteQuery(disagreementsQuery(collectionId));
+  const items = query.data?.pages.flatMap((page) => page.items) ?? [];
   return (
     <Asked what="the disagreements" query={query}>
-      {({ items }) =>
+      {() =>
         items.length === 0 ? (
           <Notice kind="empty" title="No disagreements">
             They show where a collection asks for several labels of a shape, and people's differ too much.
           </Notice>
         ) : (
-          <ul className={styles.list}>
-            {items.map((each) => (
-              <li key={each.review_id}>
-                <DisagreementCard collectionId={collectionId} disagreement={each} />
-              </li>
-            ))}
-          </ul>
+          <>
+            <ul className={styles.list}>
+              {items.map((each) => (
+                <li key={each.review_id}>
+                  <DisagreementCard collectionId={collectionId} disagreement={each} />
+                </li>
+              ))}
+            </ul>
+            <LoadMore pages={query} />
+          </>
         )
       }
     </Asked>
@@ -53,7 +59,10 @@ function DisagreementCard(props: { collectionId: number; disagreement: Disagreem
       <ul className={styles.answers} aria-label="Whose labels">
         {disagreement.answers.map((answer) => (
           <li key={answer.id}>
-            <span className={styles.answerName}>{answer.person_name}</span>
+            <span className={styles.answerName}>
+              {answer.person_name}
+              <span className={styles.effort}>{effortWords(answer.effort)}</span>
+            </span>
             {answer.is_medoid && <Badge>Closest to the others</Badge>}
             <Button
               size="small"

@@ -1,18 +1,19 @@
-import { useInfiniteQuery } from "@tanstack/react-query";
+import { useInfiniteQuery, useQuery } from "@tanstack/react-query";
 import { ChevronLeft, ChevronRight } from "lucide-react";
 import { useEffect, useState } from "react";
 import { IconButton, Notice } from "../components";
+import { whole } from "../components/numbers";
 import { Asked } from "./Asked";
 import { ReviewCard } from "./ReviewCard";
 import styles from "./Reviews.module.css";
-import { reviewsQuery } from "./reviewRequests";
+import { reviewCountQuery, reviewsQuery } from "./reviewRequests";
 
 /** Labels that wait for a second look, one after the other. */
 export function OpenReviews({ collectionId }: { collectionId: number }) {
   const query = useInfiniteQuery(reviewsQuery(collectionId));
   const [place, setPlace] = useState(0);
-  const open = query.data?.pages.flatMap((page) => page.items) ?? [];
-  const items = open.filter(({ review }) => review.reason !== "rework"); // those wait for an annotator
+  const nOpen = useQuery(reviewCountQuery(collectionId)).data;
+  const items = query.data?.pages.flatMap((page) => page.items) ?? [];
   const at = Math.min(place, Math.max(0, items.length - 1));
   const { hasNextPage, fetchNextPage } = query;
   const isNearEnd = at >= items.length - 2;
@@ -39,8 +40,7 @@ export function OpenReviews({ collectionId }: { collectionId: number }) {
                 onClick={() => setPlace(at - 1)}
               />
               <p>
-                {at + 1} of {items.length}
-                {hasNextPage && " or more"}
+                {whole(at + 1)} of {whole(Math.max(nOpen ?? 0, items.length))}
               </p>
               <IconButton
                 size="small"

@@ -7,7 +7,7 @@ import { pictureOf } from "../rooms/table/rows/shapeRows";
 import { LabelsPicture } from "./LabelsPicture";
 import styles from "./Reviews.module.css";
 import { type ReviewedShape, useDecision } from "./reviewRequests";
-import { detailWords, REASON_WORDS } from "./reviewWords";
+import { detailWords, effortWords, REASON_WORDS } from "./reviewWords";
 
 const MAX_NOTE = 2_000;
 
@@ -19,6 +19,7 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
   const deciding = useDecision(collectionId);
   const { title, why } = REASON_WORDS[review.reason];
   const detail = detailWords(review);
+  const effort = effortWords(review.effort);
   const about = { shapeId: row.id, reviewId: review.id };
   const told = (message: string) => ({ onSuccess: () => showToast({ message, tone: "good" }) });
   return (
@@ -28,6 +29,7 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
       </h3>
       <p className={styles.reason}>
         {title}, <Time at={review.created_at} />
+        {effort && ` · ${effort}`}
       </p>
       <div className={styles.pictures}>
         <LabelsPicture

@@ -2,7 +2,8 @@
 import { infiniteQueryOptions, queryOptions, useMutation, useQueryClient } from "@tanstack/react-query";
 import { api, body, type Schemas } from "../api/client";
 
-export type Review = Schemas["ReviewOut"];
+export type Review = Schemas["OpenReviewOut"];
+export type Effort = Schemas["EffortOut"];
 export type Disagreement = Schemas["DisagreementOut"];
 /** interval : the low and the high end. */
 export type AcceptBatch = Omit<Schemas["AcceptBatchOut"], "interval"> & {
@@ -15,7 +16,13 @@ export interface ReviewedShape {
 }
 
 const PAGE = 50;
+/** In place of an id that a page ended with. */
+const NEWEST = 0;
+const nextOf = ({ next }: { next?: string | null | undefined }) => (next == null ? null : Number(next));
 const ofCollection = (collectionId: number) => ({ collection_id: collectionId });
+
+/** What a reviewer decides. Labels that were sent back wait for an annotator. */
+const REASONS: Review["reason"][] = ["map-back", "schema", "check", "disagreement"];
 
 /** Labels that wait, oldest first, each with its shape. */
 export const reviewsQuery = (collectionId: number) =>
@@ -26,13 +33,24 @@ export const reviewsQuery = (collectionId: number) =>
       const path = ofCollection(collectionId);
       const page = await body(
         api.GET("/api/v1/collections/{collection_id}/reviews", {
-          params: { path, query: { after: pageParam, limit: PAGE } },
+          params: { path, query: { after: pageParam, limit: PAGE, reason: REASONS } },
           signal,
         }),
       );
       return { items: await withRows(collectionId, page.items, signal), next: page.next };
     },
-    getNextPageParam: ({ next }) => (next == null ? null : Number(next)),
+    getNextPageParam: nextOf,
+  });
+
+/** How many labels wait. */
+export const reviewCountQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["reviews", collectionId, "count"],
+    queryFn: async ({ signal }) => {
+      const params = { path: ofCollection(collectionId), query: { reason: REASONS } };
+      return (await body(api.GET("/api/v1/collections/{collection_id}/reviews/count", { params, signal })))
+        .n_reviews;
+    },
   });
 
 async function withRows(
@@ -53,26 +71,35 @@ async function withRows(
 
 /** Shapes whose independent labels differ too much. */
 export const disagreementsQuery = (collectionId: number) =>
-  queryOptions({
+  infiniteQueryOptions({
     queryKey: ["reviews", collectionId, "disagreements"],
-    queryFn: () =>
+    initialPageParam: 0,
+    queryFn: ({ pageParam, signal }) =>
       body(
         api.GET("/api/v1/collections/{collection_id}/disagreements", {
-          params: { path: ofCollection(collectionId), query: { limit: PAGE } },
+          params: { path: ofCollection(collectionId), query: { after: pageParam, limit: PAGE } },
+          signal,
         }),
       ),
+    getNextPageParam: nextOf,
   });
 
 /** What was accepted in bulk, newest first. */
 export const acceptsQuery = (collectionId: number) =>
-  queryOptions({
+  infiniteQueryOptions({
     queryKey: ["accepts", collectionId],
-    queryFn: () =>
+    initialPageParam: NEWEST,
+    queryFn: ({ pageParam, signal }) =>
       body(
         api.GET("/api/v1/collections/{collection_id}/accepts", {
-          params: { path: ofCollection(collectionId), query: { limit: PAGE } },
+          params: {
+            path: ofCollection(collectionId),
+            query: { limit: PAGE, ...(pageParam === NEWEST ? {} : { before: pageParam }) },
+          },
+          signal,
         }),
       ),
+    getNextPageParam: nextOf,
   });
 
 export type Decision =

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { AcceptBatch, Review } from "./reviewRequests";
-import { detailWords, falseAcceptWords } from "./reviewWords";
+import { detailWords, effortWords, falseAcceptWords } from "./reviewWords";
 
 const review = (detail: Review["detail"]): Review => ({
   id: 1,
@@ -13,6 +13,7 @@ const review = (detail: Review["detail"]): Review => ({
   resolved_at: null,
   resolved_by: null,
   outcome: null,
+  effort: null,
 });
 
 const batch = (given: Partial<AcceptBatch>): AcceptBatch => ({
@@ -36,6 +37,14 @@ describe("detailWords", () => {
     expect(detailWords(review({ note: "the wing" }))).toBe("“the wing”");
     expect(detailWords(review({ agreement: 0.805 }))).toBe("80.5% of the area agrees.");
     expect(detailWords(review({}))).toBeNull();
+  });
+});
+
+describe("effortWords", () => {
+  it("is time and clicks, or nothing where nobody noted them", () => {
+    expect(effortWords({ active_s: 130, n_clicks: 1 })).toBe("2 min of work, 1 click");
+    expect(effortWords({ active_s: 0, n_clicks: 0 })).toBe("under 1 s of work, 0 clicks");
+    expect(effortWords(null)).toBeNull();
   });
 });
 

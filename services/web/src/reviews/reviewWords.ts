@@ -1,6 +1,7 @@
 /** Why labels wait, in words. */
 import { count, percent } from "../components/numbers";
-import type { AcceptBatch, Review } from "./reviewRequests";
+import { durationInWords } from "../components/timeInWords";
+import type { AcceptBatch, Effort, Review } from "./reviewRequests";
 
 export const REASON_WORDS: Readonly<Record<Review["reason"], { title: string; why: string }>> = {
   "map-back": {
@@ -24,6 +25,12 @@ export function detailWords({ detail }: Review): string | null {
   if (typeof detail.note === "string" && detail.note !== "") return `“${detail.note}”`;
   if (typeof detail.agreement === "number") return `${percent(detail.agreement)} of the area agrees.`;
   return null;
+}
+
+/** "2 min 10 s of work, 14 clicks"; null where nobody noted it. */
+export function effortWords(effort: Effort | null): string | null {
+  if (effort === null) return null;
+  return `${durationInWords(effort.active_s)} of work, ${count(effort.n_clicks, "click")}`;
 }
 
 /** "2 of 9 wrong: 22.2% (6.3% to 54.7%)", or that nobody knows yet. */

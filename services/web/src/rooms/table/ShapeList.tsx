@@ -7,13 +7,13 @@ import type { RowList } from "./rows/tableQueries";
 import type { ShapeRows } from "./rows/useShapeRows";
 import type { SelectionState } from "./selection/useSelection";
 import styles from "./TableRoom.module.css";
+import { countFilters } from "./view/tableView";
 
 export interface ShapeListProps {
   readonly list: RowList;
   readonly rows: ShapeRows;
   readonly look: TileLook;
   readonly selection: SelectionState;
-  readonly isFiltered: boolean;
   onWindow(first: number, last: number): void;
   onOpen(rows: readonly ShapeRow[]): void;
   onClearFilters(): void;
@@ -21,7 +21,9 @@ export interface ShapeListProps {
 
 /** The grid, or why there is none. */
 export function ShapeList(props: ShapeListProps) {
-  const { list, rows, isFiltered, onClearFilters } = props;
+  const { list, rows, onClearFilters } = props;
+  const nFilters = countFilters(list.filters);
+  const isName = nFilters === 1 && list.filters.name !== null;
   if (rows.nShapes === null && rows.error !== null) {
     return (
       <Notice
@@ -36,14 +38,16 @@ export function ShapeList(props: ShapeListProps) {
   }
   if (rows.nShapes === null) return <Opening />;
   if (rows.nShapes === 0) {
-    if (isFiltered) {
+    if (nFilters > 0) {
       return (
         <Notice
           kind="empty"
-          title="No shape meets these filters"
-          actions={<Button onClick={onClearFilters}>Clear filters</Button>}
+          title={isName ? `No name has “${list.filters.name}” in it` : "No shape meets these filters"}
+          actions={<Button onClick={onClearFilters}>{isName ? "Clear the search" : "Clear filters"}</Button>}
         >
-          Take one of them away to see more.
+          {isName
+            ? "Names are those of the files, with their folders."
+            : "Take one of them away to see more."}
         </Notice>
       );
     }

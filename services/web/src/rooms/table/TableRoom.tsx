@@ -20,7 +20,7 @@ import styles from "./TableRoom.module.css";
 import { FilterChips } from "./toolbar/FilterChips";
 import { TableToolbar } from "./toolbar/TableToolbar";
 import { TrainingLine } from "./toolbar/TrainingLine";
-import { countFilters, NO_FILTERS } from "./view/tableView";
+import { NO_FILTERS } from "./view/tableView";
 import { useTableView } from "./view/useTableView";
 
 /** Every shape of a collection: what is labelled, what to label next, and what to do with many at once. */
@@ -79,7 +79,6 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
           <ShapeList
             key={JSON.stringify([list.filters, list.order, list.descending])}
             {...{ list, rows, look, selection, onWindow }}
-            isFiltered={countFilters(view.filters) > 0}
             onOpen={open}
             onClearFilters={() => state.filter(NO_FILTERS)}
           />

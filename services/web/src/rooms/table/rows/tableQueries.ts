@@ -17,8 +17,9 @@ export interface RowList {
 const DROPPED_AFTER_MS = 20_000;
 
 export function filterQuery(filters: ShapeFilters) {
-  const { state, part, cluster, author, failed } = filters;
+  const { name, state, part, cluster, author, failed } = filters;
   return {
+    ...(name === null ? {} : { name }),
     ...(state === null ? {} : { state }),
     ...(part === null ? {} : { part }),
     ...(cluster === null ? {} : { cluster }),

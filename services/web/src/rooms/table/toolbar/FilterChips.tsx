@@ -6,6 +6,7 @@ import { STATE_WORDS, stageWords } from "../grid/stateWords";
 import { peopleQuery } from "../rows/tableQueries";
 import { countFilters, NO_FILTERS, type ShapeFilters, STATES } from "../view/tableView";
 import { FilterChip, type FilterOption } from "./FilterChip";
+import { NameSearch } from "./NameSearch";
 import styles from "./Toolbar.module.css";
 
 /** Stages that can fail, in the order in which shapes go through them. */
@@ -14,7 +15,7 @@ const STAGES = ["any", "mesh", "remesh", "describe", "picture", "evaluate", "ref
 export interface FilterChipsProps {
   readonly collectionId: number;
   readonly filters: ShapeFilters;
-  onFilter(part: Partial<ShapeFilters>): void;
+  onFilter(part: Partial<ShapeFilters>, isPassing?: boolean): void;
 }
 
 /** What shapes must meet to be shown: a menu for each, which says how many there would be. */
@@ -24,6 +25,7 @@ export function FilterChips({ collectionId, filters, onFilter }: FilterChipsProp
   const about = { collectionId, filters };
   return (
     <search className={styles.filters} aria-label="Filters">
+      <NameSearch name={filters.name} onSearch={(name) => onFilter({ name }, true)} />
       <FilterChip
         {...about}
         label="State"

@@ -1,11 +1,19 @@
 import { describe, expect, it } from "vitest";
-import { countFilters, DEFAULT_VIEW, NO_FILTERS, searchOf, type TableView, viewOf } from "./tableView";
+import {
+  countFilters,
+  DEFAULT_VIEW,
+  NO_FILTERS,
+  searchedName,
+  searchOf,
+  type TableView,
+  viewOf,
+} from "./tableView";
 
 const FULL: TableView = {
   shown: "refined",
   order: "entropy",
   descending: true,
-  filters: { state: "ready", part: 2, cluster: 0, author: 7, failed: "remesh" },
+  filters: { name: "arm chair/é&1", state: "ready", part: 2, cluster: 0, author: 7, failed: "remesh" },
   size: "l",
   panel: "map",
 };
@@ -36,6 +44,16 @@ describe("viewOf", () => {
   it("takes cluster 0 as a cluster", () => {
     expect(viewOf("cluster=0").filters.cluster).toBe(0);
   });
+});
+
+describe("searchedName", () => {
+  it.each([
+    ["", null],
+    ["  ", null],
+    [" a.off ", "a.off"],
+    ["a\0b", "ab"],
+    ["n".repeat(201), "n".repeat(200)],
+  ])("of %j is %j", (text, name) => expect(searchedName(text)).toBe(name));
 });
 
 describe("searchOf", () => {

@@ -12,8 +12,13 @@ export type TileSize = (typeof TILE_SIZES)[number];
 export const PANELS = ["map", "parts", "reviews"] as const;
 export type Panel = (typeof PANELS)[number];
 
+/** What the service takes. */
+export const MAX_NAME = 200;
+
 /** What a shape must meet, all of it; null asks for nothing. `failed` is the stage that failed, or "any". */
 export interface ShapeFilters {
+  /** A part of the shape's name. */
+  readonly name: string | null;
   readonly state: ShapeState | null;
   readonly part: number | null;
   readonly cluster: number | null;
@@ -32,6 +37,7 @@ export interface TableView {
 }
 
 export const NO_FILTERS: ShapeFilters = {
+  name: null,
   state: null,
   part: null,
   cluster: null,
@@ -57,6 +63,7 @@ export function viewOf(search: string): TableView {
     order: isName(order) ? order : null,
     descending: given.get("dir") === "desc",
     filters: {
+      name: searchedName(given.get("name") ?? ""),
       state: oneOf(STATES, given.get("state")),
       part: idOf(given.get("part")),
       cluster: idOf(given.get("cluster")),
@@ -75,6 +82,7 @@ export function searchOf(view: TableView): string {
     ["show", view.shown === DEFAULT_VIEW.shown ? null : view.shown],
     ["order", view.order],
     ["dir", view.descending ? "desc" : null],
+    ["name", filters.name],
     ["state", filters.state],
     ["part", filters.part],
     ["cluster", filters.cluster],
@@ -91,6 +99,11 @@ export function searchOf(view: TableView): string {
 /** How many filters are set. */
 export function countFilters(filters: ShapeFilters): number {
   return Object.values(filters).filter((value) => value !== null).length;
+}
+
+/** The part of a name that a text asks for; null if it asks for none. */
+export function searchedName(text: string): string | null {
+  return text.replaceAll("\0", "").trim().slice(0, MAX_NAME) || null;
 }
 
 function oneOf<T extends string>(known: readonly T[], value: string | null): T | null {
