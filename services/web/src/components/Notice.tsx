@@ -34,8 +34,10 @@ export function Notice({
     >
       {kind !== "empty" && <Icon className={styles.icon} aria-hidden="true" />}
       <div className={styles.words}>
-        <p className={styles.title}>{title}</p>
-        {children !== undefined && <div className={styles.text}>{children}</div>}
+        <div className={styles.said}>
+          <p className={styles.title}>{title}</p>
+          {children !== undefined && <div className={styles.text}>{children}</div>}
+        </div>
         {actions !== undefined && <div className={styles.actions}>{actions}</div>}
       </div>
     </div>

@@ -80,6 +80,20 @@ describe("a lease", () => {
     expect(keeper.state.get().kind).toBe("held");
   });
 
+  it("that an operator took away is left to others, and claimed again only when the person asks", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    answers = [fails(conflict("lease 1 is cleared", { outcome: "cleared" }))];
+    await keeper.renew();
+    await clock.advance(10 * LEASE_MS);
+    expect([keeper.state.get(), nRenewals, keeper.lease.id]).toEqual([{ kind: "taken-away" }, 1, 1]);
+
+    claims = [fails(conflict("chair.off is with someone else now"))];
+    await expect(keeper.claimBack()).rejects.toThrow("with someone else");
+    expect(keeper.state.get().kind).toBe("taken-away");
+    await keeper.claimBack();
+    expect([keeper.state.get().kind, keeper.lease.id]).toEqual(["held", 2]);
+  });
+
   it("tells that work has begun as often as it takes, then no more", async () => {
     const keeper = new LeaseKeeper(transport, clock, renewed());
     answers = [fails(new Unreachable("cut"))];

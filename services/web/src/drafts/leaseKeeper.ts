@@ -1,4 +1,6 @@
 /** Holds a leased shape for its person by renewing the lease, and notices when it was lost. */
+
+import { Problem } from "../api/problem";
 import { Backoff } from "./backoff";
 import type { Clock } from "./clock";
 import { Observable } from "./observable";
@@ -28,8 +30,10 @@ export type LeaseState =
   | { readonly kind: "held" }
   /** The service was not reached for longer than the lease lasts: somebody else may have the shape. */
   | { readonly kind: "unsure" }
-  /** Somebody else has the shape, or it was taken away. Strokes are still taken. */
-  | { readonly kind: "lost"; readonly why: string };
+  /** Somebody else has the shape. Strokes are still taken. */
+  | { readonly kind: "lost"; readonly why: string }
+  /** An operator took the shape away: it is claimed again only if the person asks. Strokes are still taken. */
+  | { readonly kind: "taken-away" };
 
 const SHORTEST_MS = 5_000;
 const RENEWALS_A_LEASE = 3;
@@ -77,6 +81,11 @@ export class LeaseKeeper<L extends LeaseRecord> {
     }
   }
 
+  /** After it was taken away: claims the shape again, because the person wants it. Rejects if it is not to be had. */
+  claimBack(): Promise<void> {
+    return this.reclaim();
+  }
+
   stop(): void {
     this.isStopped = true;
     this.cancel?.();
@@ -88,21 +97,26 @@ export class LeaseKeeper<L extends LeaseRecord> {
       this.hold(await this.transport.renew(this.held.id, this.wish));
     } catch (error) {
       const failure = failureOf(error);
-      if (failure.kind === "closed" || failure.kind === "stale") await this.claimAgain();
+      if (isCleared(error)) this.state.set({ kind: "taken-away" });
+      else if (failure.kind === "closed" || failure.kind === "stale") await this.claimAgain();
       else this.later(failure.why, failure.kind === "refused");
     }
   }
 
   private async claimAgain(): Promise<void> {
     try {
-      const renewed = await this.transport.reclaim(this.held.collection_id, this.held.shape_id);
-      if (this.isStopped) return;
-      this.hold(renewed);
-      this.onReclaimed(renewed.lease);
+      await this.reclaim();
     } catch (error) {
       const failure = failureOf(error);
       this.later(failure.why, failure.kind !== "passing" && failure.kind !== "signed-out");
     }
+  }
+
+  private async reclaim(): Promise<void> {
+    const renewed = await this.transport.reclaim(this.held.collection_id, this.held.shape_id);
+    if (this.isStopped) return;
+    this.hold(renewed);
+    this.onReclaimed(renewed.lease);
   }
 
   private hold({ lease, at }: Renewed<L>): void {
@@ -127,4 +141,9 @@ export class LeaseKeeper<L extends LeaseRecord> {
     }
     this.backoff.wait(() => void this.renew());
   }
+}
+
+/** Whether a renewal was refused because an operator had ended the lease. */
+function isCleared(error: unknown): boolean {
+  return error instanceof Problem && error.document.outcome === "cleared";
 }

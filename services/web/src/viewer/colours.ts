@@ -61,6 +61,9 @@ export function heatColour(value: number): Rgb {
   return t < 0.5 ? mixed(COLD, WARM, 2 * t) : mixed(WARM, HOT, 2 * t - 1);
 }
 
+/** The same colours from left to right, for CSS: what a legend shows. */
+export const HEAT_GRADIENT = `linear-gradient(to right, ${[COLD, WARM, HOT].map((rgb) => `rgb(${rgb.join(" ")})`).join(", ")})`;
+
 function mixed(from: Rgb, to: Rgb, share: number): Rgb {
   const between = (axis: 0 | 1 | 2) => Math.round(from[axis] + (to[axis] - from[axis]) * share);
   return [between(0), between(1), between(2)];

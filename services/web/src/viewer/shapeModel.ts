@@ -77,6 +77,11 @@ export class ShapeModel {
     this.scene.matrixWorldAutoUpdate = false;
   }
 
+  /** The same surface once more, to show something else on it. To be disposed by whoever asked. */
+  alike(): ShapeModel {
+    return new ShapeModel(this.#prepared);
+  }
+
   setPalette(palette: Palette): void {
     this.#states.setPalette(palette);
   }

@@ -16,7 +16,7 @@ export interface StageNoticesProps {
   confirming: Confirming;
 }
 
-/** What is said over the stage: about the shape in hand, and about shapes that were not to be had. */
+/** What is said above the stage: about the shape in hand, and about shapes that were not to be had. */
 export function StageNotices({ desk, held, open, confirming }: StageNoticesProps) {
   const { refused, why } = useObservable(desk.state);
   const leave = () => void desk.leave(held);
@@ -31,7 +31,11 @@ export function StageNotices({ desk, held, open, confirming }: StageNoticesProps
           title={
             refused.length === 1 ? "One shape is not to be had" : `${refused.length} shapes are not to be had`
           }
-          actions={<Button onClick={() => desk.dismissRefusals()}>All right</Button>}
+          actions={
+            <Button size="small" onClick={() => desk.dismissRefusals()}>
+              All right
+            </Button>
+          }
         >
           {refused.map((each) => each.why).join(" ")}
         </Notice>

@@ -15,9 +15,10 @@ import { ShapePanel } from "./panel/ShapePanel";
 import type { Part } from "./parts";
 import { StageNotices } from "./StageNotices";
 import { Stage } from "./stage/Stage";
+import { nextShown, type Shown } from "./stage/shown";
 import { ViewControls } from "./stage/ViewControls";
 import type { LiveView } from "./stage/Viewport";
-import { nextCount, type Views } from "./stage/views";
+import { nextCount, ONE_VIEW, shownAt, type Views, withShown } from "./stage/views";
 import { ToolOptions } from "./tools/ToolOptions";
 import { ToolRail } from "./tools/ToolRail";
 import type { ToolShelf } from "./tools/toolSettings";
@@ -33,7 +34,7 @@ export interface WorkbenchProps {
   shelf: ToolShelf;
 }
 
-type Shown = "skip" | "keys" | null;
+type Opened = "skip" | "keys" | null;
 
 /** A shape in hand, with everything that can be done to it. */
 export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
@@ -44,14 +45,18 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
   const state = useObservable(held.state);
   const open = state.step === "ready" ? state.open : null;
   const active = useRef<LiveView | null>(null);
-  const [views, setViews] = useState<Views>({ count: 1, content: "cameras", isLinked: false });
-  const [shown, setShown] = useState<Shown>(null);
+  const [views, setViews] = useState(ONE_VIEW);
+  const [dialog, setDialog] = useState<Opened>(null);
   const patches = usePatches(open, settings.tool === "patches", settings.nPatches, settings.method);
   const refinement = useRefinement(open);
   const confirming = useConfirming(desk, held);
   useKnownParts(shelf, open, parts);
   const up = upAxisOf(collection.settings.up);
   const changeViews = (some: Partial<Views>) => setViews((known) => ({ ...known, ...some }));
+  const changeShown = (next: (shown: Shown) => Shown) => {
+    const place = active.current?.place ?? 0;
+    changeViews({ shown: withShown(views, place, next(shownAt(views, place))) });
+  };
   const look = (name?: NamedView) => active.current?.view.frame(name);
 
   useShortcuts({
@@ -65,16 +70,15 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
     morePatches: (direction) => shelf.morePatches(direction),
     toggleAngleLimit: () => shelf.change({ hasAngleLimit: !settings.hasAngleLimit }),
     press() {
-      if (active.current?.gestures.pressAtCentre() === false) {
-        showToast({ message: "There is no surface at the middle of the view." });
-      }
+      const why = active.current?.gestures.pressAtCentre() ?? null;
+      if (why !== null) showToast({ message: why });
     },
     undo: () => open?.undo(),
     redo: () => open?.redo(),
     refineBoundaries: () => refinement.boundaries(settings.omega),
     refineWithModel: () => refinement.model(),
     confirm: () => void confirming.confirm(),
-    skip: () => setShown("skip"),
+    skip: () => setDialog("skip"),
     nextShape() {
       const { shapes } = desk.state.get();
       const next = shapes[(shapes.indexOf(held) + 1) % shapes.length];
@@ -82,9 +86,12 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
     },
     cycleViews: () => changeViews({ count: nextCount(views.count) }),
     toggleLink: () => changeViews({ isLinked: !views.isLinked }),
+    cycleShown: () => changeShown(nextShown),
+    toggleUncertainty: () => changeShown((shown) => (shown === "uncertainty" ? "draft" : "uncertainty")),
+    toggleEdges: () => changeViews({ hasEdges: !views.hasEdges }),
     frame: () => look(),
     look,
-    showKeys: () => setShown("keys"),
+    showKeys: () => setDialog("keys"),
   });
 
   return (
@@ -95,16 +102,19 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
         <ToolOptions shelf={shelf} parts={parts} patches={patches} />
         <ViewControls views={views} onChange={changeViews} onFrame={look} />
       </div>
+      <div className={styles.notices} aria-live="polite">
+        <StageNotices desk={desk} held={held} open={open} confirming={confirming} />
+      </div>
       <div className={styles.stage}>
         <Stage
           {...{ desk, shelf, parts, patches, views, up, scheme }}
           onActive={(live) => {
             active.current = live;
           }}
+          onViews={changeViews}
           onRetry={(shape) =>
             void shape.retry({ partIds: parts.map((part) => part.id), start: settings.start })
           }
-          over={<StageNotices desk={desk} held={held} open={open} confirming={confirming} />}
         />
       </div>
       <div className={styles.side}>
@@ -112,17 +122,17 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
           {...{ desk, held, parts, shelf, refinement }}
           isConfirming={confirming.isBusy}
           onConfirm={() => void confirming.confirm()}
-          onSkip={() => setShown("skip")}
+          onSkip={() => setDialog("skip")}
         />
       </div>
-      {shown === "keys" && <ShortcutSheet onClose={() => setShown(null)} />}
-      {shown === "skip" && (
+      {dialog === "keys" && <ShortcutSheet onClose={() => setDialog(null)} />}
+      {dialog === "skip" && (
         <SkipDialog
           name={held.lease.source_key}
-          onClose={() => setShown(null)}
+          onClose={() => setDialog(null)}
           onSkip={async (reason) => {
             await desk.skip(held, reason);
-            setShown(null);
+            setDialog(null);
           }}
         />
       )}

@@ -56,12 +56,14 @@ let queue: FakeQueue;
 let outcome: ConfirmOutcome;
 let loaded: number[];
 let closed: number[];
+let taken: number[];
 
 beforeEach(() => {
   queue = new FakeQueue();
   outcome = { kind: "confirmed" };
   loaded = [];
   closed = [];
+  taken = [];
 });
 
 function held({ lease }: Renewed<Lease>): HeldShape {
@@ -73,6 +75,10 @@ function held({ lease }: Renewed<Lease>): HeldShape {
     lease,
     shapeId: lease.shape_id,
     state: new Observable({ step: "mesh" } as HeldState),
+    keeper: {
+      renew: async () => {},
+      state: { get: () => ({ kind: taken.includes(lease.shape_id) ? "taken-away" : "held" }) },
+    },
     open: { draft: { confirm }, editor: { sha256: () => "sum" } },
     load: () => loaded.push(lease.shape_id),
     begin: async () => {},
@@ -158,6 +164,24 @@ describe("a desk", () => {
     queue.isDown = false;
     await desk.takeNext();
     expect(current(desk)).toBe(1);
+  });
+
+  it("keeps a shape that was taken away in sight, but not one that was only loaded ahead", async () => {
+    const desk = await started();
+    taken = [1, 2];
+    queue.end(2);
+    await desk.recheck(1);
+    await desk.recheck(2);
+    await settled();
+    expect([inHand(desk), closed]).toEqual([[1], [2]]);
+    await desk.takeNext();
+    expect(inHand(desk)).toEqual([1, 3]);
+  });
+
+  it("hears nothing of shapes that are not on it", async () => {
+    const desk = await started();
+    await desk.recheck(77);
+    expect(closed).toEqual([]);
   });
 
   it("claims nothing when it is closed at once", async () => {

@@ -123,6 +123,17 @@ export class Desk {
     }
   }
 
+  /** A lease of this person's ended elsewhere, or began: looks what has become of it. */
+  async recheck(shapeId: number): Promise<void> {
+    const shape = this.all().find((each) => each.shapeId === shapeId);
+    await shape?.keeper.renew();
+    const isGone = shape?.keeper.state.get().kind === "taken-away" && shape === this.ahead;
+    if (!isGone) return;
+    this.ahead = null; // nobody has seen it yet: another one comes in its place, and no word about it
+    await shape.close();
+    await this.loadAhead();
+  }
+
   async close(): Promise<void> {
     this.isClosed = true;
     await Promise.all(this.all().map((shape) => shape.close()));

@@ -1,6 +1,8 @@
 /** The desk of a collection, from entering the room to leaving it. */
 import { useEffect, useRef, useState } from "react";
+import type { ServiceEvent } from "../../../api/events";
 import { onSessionBegin } from "../../../api/sessionEnd";
+import { useServiceEvents } from "../../../app/events/useServiceEvents";
 import { systemClock } from "../../../drafts/clock";
 import type { SessionParts } from "../../../drafts/draftSession";
 import { browserTabs } from "../../../drafts/editingRight";
@@ -51,7 +53,22 @@ export function useDesk(
       void desk.close();
     };
   }, [collectionId, personId, wanted]);
+  useServiceEvents(
+    collectionId,
+    (event) => {
+      const shapeId = endedFor(personId, event);
+      if (shapeId !== null) void opened?.desk.recheck(shapeId);
+    },
+    () => opened?.desk.wake(),
+  );
   return opened;
+}
+
+/** The shape that an event says this person no longer holds, without their doing; null if it says another thing. */
+export function endedFor(personId: number, { kind, payload }: ServiceEvent): number | null {
+  const isTheirs = kind === "queue" && payload.person_id === personId;
+  const isEnd = payload.what === "cleared" || payload.what === "expired";
+  return isTheirs && isEnd && typeof payload.shape_id === "number" ? payload.shape_id : null;
 }
 
 function openKeys(desk: Desk): Set<string> {

@@ -1,5 +1,5 @@
 import type { ReactNode } from "react";
-import { Button, Notice } from "../../../components";
+import { Button, Notice, useToast } from "../../../components";
 import { count } from "../../../components/numbers";
 import { useObservable } from "../../../drafts/useObservable";
 import type { HeldShape } from "../desk/heldShape";
@@ -36,6 +36,7 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
           {sentence(lease.why)} Your strokes are kept.
         </Notice>
       )}
+      {lease.kind === "taken-away" && !isLossTold && <TakenAway held={held} leave={leave} />}
       {role === "watching" && <Watching open={open} />}
       {save.kind === "conflict" && <ConflictBar open={open} divergence={save.divergence} />}
       {(save.kind === "closed" || save.kind === "refused") && (
@@ -43,6 +44,28 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
       )}
       <SetAsideBar open={open} />
     </>
+  );
+}
+
+/** An operator freed the shape: the person may go on elsewhere, or ask for it again. */
+function TakenAway({ held, leave }: { held: HeldShape; leave: ReactNode }) {
+  const showToast = useToast();
+  const claimBack = () =>
+    held.keeper.claimBack().catch((error: Error) => showToast({ message: error.message, tone: "bad" }));
+  return (
+    <Notice
+      title="An operator took this shape back"
+      actions={
+        <>
+          {leave}
+          <Button variant="quiet" onClick={() => void claimBack()}>
+            Ask for it again
+          </Button>
+        </>
+      }
+    >
+      Nothing is lost: your strokes are kept, and are there if you get the shape again.
+    </Notice>
   );
 }
 

@@ -18,6 +18,9 @@ export interface WorkbenchActions {
   nextShape(): void;
   cycleViews(): void;
   toggleLink(): void;
+  cycleShown(): void;
+  toggleUncertainty(): void;
+  toggleEdges(): void;
   frame(): void;
   look(name: "front" | "back" | "left" | "right" | "top" | "bottom"): void;
   showKeys(): void;
@@ -119,6 +122,27 @@ export const SHORTCUTS: readonly Shortcut[] = [
   },
   { keys: ["v"], shown: "V", what: "One to four views", group: "View", run: (act) => act.cycleViews() },
   { keys: ["l"], shown: "L", what: "Link the cameras", group: "View", run: (act) => act.toggleLink() },
+  {
+    keys: ["d"],
+    shown: "D",
+    what: "Draft, predicted, refined, confirmed, unsure",
+    group: "View",
+    run: (act) => act.cycleShown(),
+  },
+  {
+    keys: ["u"],
+    shown: "U",
+    what: "How unsure the model is, on or off",
+    group: "View",
+    run: (act) => act.toggleUncertainty(),
+  },
+  {
+    keys: ["g"],
+    shown: "G",
+    what: "Edges of faces on or off",
+    group: "View",
+    run: (act) => act.toggleEdges(),
+  },
   { keys: ["f"], shown: "F", what: "Whole shape in view", group: "View", run: (act) => act.frame() },
   {
     keys: ["shift+f"],

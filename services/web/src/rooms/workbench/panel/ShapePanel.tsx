@@ -7,6 +7,7 @@ import type { Part } from "../parts";
 import { useCanEdit } from "../shape/useCanEdit";
 import type { ToolShelf } from "../tools/toolSettings";
 import type { Refinement } from "../tools/useRefinement";
+import { EffortLine } from "./EffortLine";
 import { HeldShapes } from "./HeldShapes";
 import { PartsList } from "./PartsList";
 import { RefinePanel } from "./RefinePanel";
@@ -60,6 +61,7 @@ export function ShapePanel(props: ShapePanelProps) {
         />
       </div>
       <footer className={styles.footer}>
+        {open !== null && <EffortLine open={open} />}
         <Button onClick={onSkip}>Skip…</Button>
         <Button
           variant="primary"

@@ -57,6 +57,11 @@ export async function fetchRevision(shapeId: number, revisionId: number): Promis
   return labelsIn(await fetchArrays(`/shapes/${shapeId}/labels?revision=${revisionId}`));
 }
 
+/** How unsure the newest model is of each face, 0 to 1. */
+export async function fetchUncertainty(shapeId: number): Promise<Float32Array> {
+  return arrayOf(await fetchArrays(`/shapes/${shapeId}/uncertainty`), "uncertainty", Float32Array);
+}
+
 /** The labels that a draft starts from. */
 export async function fetchDraftBase(draftId: number): Promise<Uint16Array> {
   return arrayOf(await fetchArrays(`/drafts/${draftId}/labels`), "base", Uint16Array);

@@ -1,4 +1,4 @@
-import { type ReactNode, useEffect, useMemo, useRef } from "react";
+import { useEffect, useMemo, useRef } from "react";
 import { Button, Notice } from "../../../components";
 import { useObservable } from "../../../drafts/useObservable";
 import { resolvedColour } from "../../../viewer/colours";
@@ -13,7 +13,7 @@ import type { Patches } from "../tools/usePatches";
 import styles from "./Stage.module.css";
 import { StageArea } from "./StageArea";
 import { type LiveView, Viewport } from "./Viewport";
-import { FIRST_LOOKS, type Views } from "./views";
+import { FIRST_LOOKS, shownAt, type Views, withShown } from "./views";
 
 export interface StageProps {
   desk: Desk;
@@ -24,18 +24,18 @@ export interface StageProps {
   up: UpAxis;
   scheme: string;
   onActive: (live: LiveView | null) => void;
+  onViews: (some: Partial<Views>) => void;
   onRetry: (held: HeldShape) => void;
-  over: ReactNode;
 }
 
 /** All views, on one canvas. */
 export function Stage(props: StageProps) {
-  const { desk, views, over } = props;
+  const { desk, views } = props;
   const { shapes, current } = useObservable(desk.state);
   const isByShape = views.content === "shapes" && views.count > 1;
   const shown = Array.from({ length: views.count }, (_, at) => (isByShape ? (shapes[at] ?? null) : current));
   return (
-    <StageArea count={views.count} over={over}>
+    <StageArea count={views.count}>
       {(stage) => <ViewGrid {...props} stage={stage} shown={shown} isByShape={isByShape} current={current} />}
     </StageArea>
   );
@@ -106,12 +106,14 @@ function OneView(props: OneViewProps) {
   const { stage, shelf, parts, patches, views, held, at, isByShape, onEngage, onLive, scheme } = props;
   const settings = useObservable(shelf.settings);
   const { tool, part, radius, hasAngleLimit, angleDegrees, onlyOver } = settings;
-  const toolKey = [tool, part, radius, hasAngleLimit && angleDegrees, onlyOver].join(" ");
+  const shown = shownAt(views, at);
+  const toolKey = [tool, part, radius, hasAngleLimit && angleDegrees, onlyOver, shown].join(" ");
   const isCurrent = held === props.current;
   const colours = useMemo(() => new Map(parts.map((part) => [part.id, part.colour])), [parts]);
   const context: GestureContext = {
     shelf,
-    open: () => held.open,
+    isDrawnOn: () => shown === "draft",
+    open: () => (shown === "draft" ? held.open : null),
     patches: () => (isCurrent ? patches.map : null),
     colourOf: (part) => colours.get(part) ?? resolvedColour(document.body, "var(--unlabelled)"),
     onEngage,
@@ -120,6 +122,10 @@ function OneView(props: OneViewProps) {
     <Viewport
       stage={stage}
       held={held}
+      place={at}
+      shown={shown}
+      onShow={(next) => props.onViews({ shown: withShown(views, at, next) })}
+      hasEdges={views.hasEdges}
       up={props.up}
       name={views.count === 1 ? "Shape" : `View ${at + 1} of ${views.count}`}
       firstLook={isByShape ? FIRST_LOOKS[0] : (FIRST_LOOKS[at] ?? FIRST_LOOKS[0])}

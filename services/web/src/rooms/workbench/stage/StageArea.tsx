@@ -1,15 +1,11 @@
 import { type ReactNode, useEffect, useRef, useState } from "react";
-import { Notice } from "../../../components";
+import { Button, Notice } from "../../../components";
 import { ShapeStage } from "../../../viewer/shapeStage";
 import styles from "./StageArea.module.css";
 import type { ViewCount } from "./views";
 
 /** The canvas behind all views, and the grid that they stand in. */
-export function StageArea(props: {
-  count: ViewCount;
-  over: ReactNode;
-  children: (stage: ShapeStage) => ReactNode;
-}) {
+export function StageArea(props: { count: ViewCount; children: (stage: ShapeStage) => ReactNode }) {
   const host = useRef<HTMLDivElement>(null);
   const [stage, setStage] = useState<ShapeStage | null>(null);
   const [why, setWhy] = useState<string | null>(null);
@@ -53,22 +49,21 @@ export function StageArea(props: {
       <div className={styles.grid} data-count={props.count}>
         {stage !== null && props.children(stage)}
       </div>
-      <div className={styles.over}>
-        {isLost && (
+      {isLost && (
+        <div className={styles.over}>
           <Notice
             kind="warning"
             title="The graphics card was taken away"
             actions={
-              <button type="button" className={styles.link} onClick={() => setAttempt(attempt + 1)}>
+              <Button size="small" onClick={() => setAttempt(attempt + 1)}>
                 Show the shapes again
-              </button>
+              </Button>
             }
           >
             Your strokes are safe. It usually comes back by itself.
           </Notice>
-        )}
-        {props.over}
-      </div>
+        </div>
+      )}
     </div>
   );
 }

@@ -4,6 +4,7 @@ import {
   Columns2,
   Eye,
   Grid2x2,
+  Grid3x3,
   Link2,
   Maximize,
   PanelsLeftBottom,
@@ -60,6 +61,14 @@ export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
           />
         </>
       )}
+      <IconButton
+        label="Edges of faces"
+        shortcut="G"
+        size="small"
+        icon={<Grid3x3 />}
+        isPressed={views.hasEdges}
+        onClick={() => onChange({ hasEdges: !views.hasEdges })}
+      />
       <Segmented
         label="Number of views"
         size="small"

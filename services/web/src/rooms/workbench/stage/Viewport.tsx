@@ -1,6 +1,7 @@
 import { useEffect, useLayoutEffect, useRef } from "react";
 import { Badge, classes } from "../../../components";
 import { useObservable } from "../../../drafts/useObservable";
+import type { SurfaceMesh } from "../../../geometry/surfaceMesh";
 import { paletteOf } from "../../../viewer/colours";
 import type { NamedView, UpAxis } from "../../../viewer/pose";
 import type { ShapeStage } from "../../../viewer/shapeStage";
@@ -9,9 +10,14 @@ import type { HeldShape } from "../desk/heldShape";
 import type { Part } from "../parts";
 import { type GestureContext, ToolGestures } from "../tools/gestures";
 import { LoadingShape } from "./LoadingShape";
+import { ShownMenu } from "./ShownMenu";
+import { type Shown, whyMissing } from "./shown";
+import { useComparison } from "./useComparison";
 import styles from "./Viewport.module.css";
 
 export interface LiveView {
+  /** Its place among the views, from 0. */
+  readonly place: number;
   readonly view: ShapeView;
   readonly gestures: ToolGestures;
 }
@@ -19,6 +25,10 @@ export interface LiveView {
 export interface ViewportProps {
   stage: ShapeStage;
   held: HeldShape;
+  place: number;
+  shown: Shown;
+  onShow: (shown: Shown) => void;
+  hasEdges: boolean;
   up: UpAxis;
   /** Such as "View 2 of 4". */
   name: string;
@@ -39,11 +49,17 @@ export interface ViewportProps {
 
 /** One camera on one shape. */
 export function Viewport(props: ViewportProps) {
-  const { stage, held, up, name, firstLook, parts, scheme, toolKey, isActive, title, context } = props;
+  const { stage, held, place, shown, up, name, firstLook, parts, scheme, toolKey, isActive, title, context } =
+    props;
   const element = useRef<HTMLElement>(null);
   const live = useRef<LiveView | null>(null);
   const state = useObservable(held.state);
-  const model = state.step === "labels" || state.step === "ready" ? state.model : null;
+  const draft = state.step === "labels" || state.step === "ready" ? state.model : null;
+  const facts = useObservable(held.facts);
+  const missing = facts && whyMissing(shown, held.lease.model_version !== null, facts.headRevision !== null);
+  const comparison = useComparison(held.shapeId, facts && draft, shown, missing);
+  const model = comparison.model ?? draft;
+  const framed = useRef<{ mesh: SurfaceMesh; look: NamedView } | null>(null);
   const latest = useRef(props);
   latest.current = props;
 
@@ -52,20 +68,21 @@ export function Viewport(props: ViewportProps) {
     const view = stage.addView(element.current, { up });
     const gestures = new ToolGestures(view, {
       shelf: context.shelf,
+      isDrawnOn: () => latest.current.context.isDrawnOn(),
       open: () => latest.current.context.open(),
       patches: () => latest.current.context.patches(),
       colourOf: (part) => latest.current.context.colourOf(part),
       onEngage: () => latest.current.context.onEngage(),
     });
     view.listen(gestures);
-    live.current = { view, gestures };
+    live.current = { place, view, gestures };
     latest.current.onView(live.current);
     return () => {
       latest.current.onView(null);
       live.current = null;
       view.remove();
     };
-  }, [stage, up, context.shelf]);
+  }, [stage, place, up, context.shelf]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: the scheme changes what the palette reads
   useLayoutEffect(() => {
@@ -76,9 +93,13 @@ export function Viewport(props: ViewportProps) {
     const view = live.current?.view;
     if (view === undefined || model === null) return undefined;
     view.show(model, { keepsPose: true });
-    view.frame(firstLook);
+    const isFramed = framed.current?.mesh === model.mesh && framed.current.look === firstLook;
+    if (!isFramed) view.frame(firstLook);
+    framed.current = { mesh: model.mesh, look: firstLook };
     return () => view.show(null);
   }, [model, firstLook]);
+
+  useLayoutEffect(() => model?.setWireframe(props.hasEdges), [model, props.hasEdges]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: the key stands for what the gestures read
   useEffect(() => live.current?.gestures.adopt(), [toolKey, model]);
@@ -100,6 +121,7 @@ export function Viewport(props: ViewportProps) {
           </Badge>
         </span>
       )}
+      <ShownMenu view={name} shown={shown} why={comparison.why} onChoose={props.onShow} />
       {/* beside the view, which takes every press on it for a gesture */}
       {state.step !== "ready" && (
         <LoadingShape state={state} onGiveUp={props.onGiveUp} onRetry={props.onRetry} />

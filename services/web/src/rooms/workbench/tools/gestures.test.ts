@@ -13,6 +13,8 @@ let preview: readonly number[];
 let brush: BrushCircle | null;
 let shelf: ToolShelf;
 let gestures: ToolGestures;
+let view: ShapeView;
+let isDrawnOn: boolean;
 let open: { labels: Uint16Array; canEdit: boolean };
 
 /** A strip of triangles along x. */
@@ -45,8 +47,11 @@ beforeEach(() => {
   open = { labels: new Uint16Array(N_FACES), canEdit: true };
   shelf = new ToolShelf({ getItem: () => null, setItem: () => undefined });
   shelf.change({ tool: "paint", radius: NARROW });
-  gestures = new ToolGestures({ model } as ShapeView, {
+  isDrawnOn = true;
+  view = { model, centreHit: () => null } as unknown as ShapeView;
+  gestures = new ToolGestures(view, {
     shelf,
+    isDrawnOn: () => isDrawnOn,
     open: () => ({ ...open, model }) as unknown as OpenShape,
     patches: () => null,
     colourOf: () => "#0072b2",
@@ -96,5 +101,21 @@ describe("the brush over the surface", () => {
     gestures.adopt();
     gestures.hover(hitOf(30));
     expect(preview).toEqual([3, 30]);
+  });
+});
+
+describe("a view", () => {
+  it("is turned rather than drawn on while it shows something to compare with", () => {
+    gestures.adopt();
+    expect(view.tool).toBe("stroke");
+    isDrawnOn = false;
+    gestures.adopt();
+    expect(view.tool).toBe("navigate");
+  });
+
+  it("says why a key presses nothing at its middle", () => {
+    expect(gestures.pressAtCentre()).toContain("no surface");
+    isDrawnOn = false;
+    expect(gestures.pressAtCentre()).toContain("to look at");
   });
 });

@@ -11,6 +11,8 @@ import type { ToolSettings, ToolShelf } from "./toolSettings";
 
 export interface GestureContext {
   readonly shelf: ToolShelf;
+  /** Whether the view shows what is drawn on, rather than something to compare it with. */
+  isDrawnOn(): boolean;
   /** The shape in the view that may be worked on now; null while there is none. */
   open(): OpenShape | null;
   patches(): PatchMap | null;
@@ -38,7 +40,7 @@ export class ToolGestures implements ViewListener {
   adopt(): void {
     const { tool, radius } = this.settings;
     const model = this.view.model;
-    this.view.tool = tool === "turn" ? "navigate" : "stroke";
+    this.view.tool = tool === "turn" || !this.context.isDrawnOn() ? "navigate" : "stroke";
     this.view.strokeSpacing = tool === "paint" ? radius * SPACING : 0;
     this.region = null;
     if (tool !== "paint") model?.setBrush(null);
@@ -94,13 +96,14 @@ export class ToolGestures implements ViewListener {
     this.context.open()?.model.setPreview(null);
   }
 
-  /** One press in the middle of the view: for the keyboard. */
-  pressAtCentre(): boolean {
+  /** One press in the middle of the view: for the keyboard. Says why it cannot be, or null. */
+  pressAtCentre(): string | null {
+    if (!this.context.isDrawnOn()) return "This view is to look at. Press in one that shows the draft.";
     const hit = this.view.centreHit();
-    if (hit === null) return false;
+    if (hit === null) return "There is no surface at the middle of the view.";
     this.strokeStart(hit);
     this.strokeEnd();
-    return true;
+    return null;
   }
 
   private get isStroking(): boolean {
