@@ -85,7 +85,7 @@ class TestLimits:
             def now(cls, tz=None):
                 return later
 
-        monkeypatch.setattr("partwise.workspace.uploads.datetime", Later)
+        monkeypatch.setattr(large_objects, "datetime", Later)
         wish = {"upload_id": upload["upload_id"]}
         assert operator.post(f"/collections/{mugs.collection_id}/ingest", json=wish).status_code == 404
 
