@@ -10,6 +10,7 @@ from partwise.config import StageLimits
 from partwise.store.records import FailureKind
 from partwise_workers import pool
 from partwise_workers.actors import StageWorker
+from partwise_workers.events import ActorMemory, OnEvent, ignore_events
 from partwise_workers.last_words import LastWords, Progress, note_progress, read_progress
 from partwise_workers.pool import ActorPool, _Dead
 from partwise_workers.supervision import Rules
@@ -43,7 +44,7 @@ def test_what_last_words_explain(
     assert (dead.is_own_fault, dead.is_explained) == (is_own_fault, is_explained)
 
 
-def pool_of(bench) -> ActorPool:
+def pool_of(bench, on_event: OnEvent = ignore_events) -> ActorPool:
     """A pool of one actor, which has started and got the one task."""
     limits = {stage.name: StageLimits() for stage in bench.stages}
     n_steps = {stage.name: stage.n_steps for stage in bench.stages}
@@ -53,6 +54,7 @@ def pool_of(bench) -> ActorPool:
         1,
         Rules(limits, n_steps, max_attempts=1, recycle_after=200),
         bench.workspace.arrays,
+        on_event,
     )
     workers.collect(ray.wait(workers.references())[0])
     workers.submit(next(bench.plan()))
@@ -70,6 +72,16 @@ def test_what_finished_while_the_driver_was_busy_is_taken_though_its_deadline_ha
     assert not workers.is_mourning
     assert workers.n_in_flight == 1
     workers.close()
+
+
+def test_what_the_actors_hold_is_told_until_they_end(make_bench) -> None:
+    told: list[ActorMemory] = []
+    workers = pool_of(make_bench({"a.off": ""}), told.append)
+    workers.collect(ray.wait(workers.references())[0])
+    workers.close()
+    assert [each.n_actors for each in (told[0], told[-1])] == [1, 0]
+    assert told[0].resident_bytes > 10**6
+    assert told[-1].resident_bytes == 0
 
 
 def test_each_step_has_the_deadline_to_itself(make_bench, monkeypatch: pytest.MonkeyPatch) -> None:

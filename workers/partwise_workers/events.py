@@ -39,7 +39,15 @@ class InFlight:
     n: int
 
 
-RunEvent: TypeAlias = StageDone | StageFailed | ActorRestarted | InFlight
+@dataclass(frozen=True, slots=True)
+class ActorMemory:
+    """Memory in RAM of all processes that work for the run together, as each told it last. Told when it changes."""
+
+    n_actors: int
+    resident_bytes: int
+
+
+RunEvent: TypeAlias = StageDone | StageFailed | ActorRestarted | InFlight | ActorMemory
 
 
 class OnEvent(Protocol):

@@ -18,7 +18,7 @@ from partwise.errors import PartwiseError, WorkerError
 from partwise.store.array_store import ArrayStore
 from partwise.store.records import FailureKind
 from partwise_workers.cluster import is_node_lost, require_living_node
-from partwise_workers.events import ActorRestarted, OnEvent, ignore_events
+from partwise_workers.events import ActorMemory, ActorRestarted, OnEvent, ignore_events
 from partwise_workers.last_words import LastWords, last_words_name, read_progress, take_last_words, take_progress
 from partwise_workers.supervision import Death, Job, Rules, why_large, why_late
 from partwise_workers.tasks import ShapeOutcome, ShapeTask, StageFailure, StageReport, Started
@@ -50,12 +50,13 @@ RETAINED_SHARE = 0.5
 
 @dataclass(slots=True)
 class _Worker:
-    """An actor, how many shapes it has had, the memory that its process had when it was ready, and its node."""
+    """An actor, how many shapes it has had, its process's memory when it was ready and as told last, and its node."""
 
     actor: Actor
     id: str
     n_shapes: int = 0
     base_bytes: int = 0
+    resident_bytes: int = 0
     node_id: str = ""
 
 
@@ -124,6 +125,7 @@ class ActorPool:
         self._dead: list[_Dead] = []
         self._closing: dict[Reference, tuple[_Worker, float]] = {}
         self._again: deque[Job] = deque()
+        self._memory = ActorMemory(0, 0)
         self._n_failed_starts = 0
         self._max_failed_starts = MAX_FAILED_STARTS * n_actors
         for _ in range(n_actors):
@@ -176,6 +178,7 @@ class ActorPool:
         self._dismiss(ready)
         while self._idle and self._again:
             self._begin(self._again.popleft())
+        self._note_memory()
         return finished
 
     def close(self) -> None:
@@ -189,6 +192,17 @@ class ActorPool:
             ray.wait(closing, num_returns=len(closing), timeout=CLOSING_S)
         for worker in workers:
             ray.kill(worker.actor)
+        self._note_memory()
+
+    def _note_memory(self) -> None:
+        """Tells what the actors that have started hold."""
+        leaving = (worker for worker, _ in self._closing.values())
+        working = (running.worker for running in self._running.values())
+        held = [worker.resident_bytes for worker in (*self._idle, *working, *leaving)]
+        memory = ActorMemory(len(held), sum(held))
+        if memory != self._memory:
+            self._memory = memory
+            self._on_event(memory)
 
     def _start_actor(self) -> None:
         require_living_node()
@@ -214,6 +228,7 @@ class ActorPool:
         else:
             self._n_failed_starts = 0
             worker.base_bytes, worker.node_id = started.resident_bytes, started.node_id
+            worker.resident_bytes = started.resident_bytes
             self._idle.append(worker)
 
     def _begin(self, job: Job) -> None:
@@ -236,7 +251,8 @@ class ActorPool:
             is_unreachable = isinstance(error, ActorUnavailableError)
             self._lose(running, FailureKind.CRASH, f"its process died ({first_line(error)})", is_unreachable)
             return []
-        is_bloated = self._is_bloated(worker, report.resident_bytes)
+        worker.resident_bytes = report.resident_bytes
+        is_bloated = self._is_bloated(worker)
         failure: StageFailure | None = None
         if isinstance(report.result, StageFailure):
             failure = report.result
@@ -257,9 +273,9 @@ class ActorPool:
             return []
         return [job.outcome(failure)]
 
-    def _is_bloated(self, worker: _Worker, resident_bytes: int) -> bool:
+    def _is_bloated(self, worker: _Worker) -> bool:
         """Whether the next stage would be blamed for memory that this process did not give back."""
-        return resident_bytes - worker.base_bytes > RETAINED_SHARE * (self._lowest_ceiling - worker.base_bytes)
+        return worker.resident_bytes - worker.base_bytes > RETAINED_SHARE * (self._lowest_ceiling - worker.base_bytes)
 
     def _judge_late_ones(self) -> list[ShapeOutcome]:
         """Stops what is past its deadline, unless it has gone on while the driver was busy with other things."""

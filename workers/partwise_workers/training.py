@@ -4,6 +4,7 @@ The actor does not open the catalog: the driver writes the labels, a batch of sh
 names, and tells the actor where they are. They are deleted afterwards; those of a run that was killed are orphans.
 """
 
+import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -29,9 +30,11 @@ from partwise.store.open import open_array_store
 from partwise.store.records import Collection, LabelRevision, Model, NewModel, ShapeState, StageRun
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected, cores
+from partwise_workers.events import ActorMemory, OnEvent, ignore_events
 from partwise_workers.model_store import write_model
 from partwise_workers.plan import chain_keys, description_stages
 from partwise_workers.pool import first_line, raise_own
+from partwise_workers.sentinel import resident_bytes
 from partwise_workers.tasks import BlockRow, block_row
 
 T = TypeVar("T")
@@ -156,6 +159,10 @@ class _Trainer:
         """Iterations done, and in all; (0, 0) before training begins."""
         return self._done
 
+    def resident_bytes(self) -> int:
+        """Memory of this process in RAM."""
+        return resident_bytes(os.getpid())
+
     def _note(self, done: int, n_total: int) -> None:
         self._done = (done, n_total)
 
@@ -168,7 +175,12 @@ def train_collection(workspace: Workspace, collection: Collection, on_progress: 
     return workspace.catalog.save_model(trained_model(workspace, collection, on_progress))
 
 
-def trained_model(workspace: Workspace, collection: Collection, on_progress: Callable[[int, int], None]) -> NewModel:
+def trained_model(
+    workspace: Workspace,
+    collection: Collection,
+    on_progress: Callable[[int, int], None],
+    on_event: OnEvent = ignore_events,
+) -> NewModel:
     """Trains on the newest human or imported labels of every shape; the weights are stored, the model is on no record.
 
     Shapes whose faces are all unlabelled teach nothing and are left out. What `on_progress` raises ends the training.
@@ -184,12 +196,15 @@ def trained_model(workspace: Workspace, collection: Collection, on_progress: Cal
         if first is None:
             raise _nothing_to_learn(workspace, collection)
         with connected():
-            result, revision_ids = _train(workspace, chain([first], batches), on_progress)
+            result, revision_ids = _train(workspace, chain([first], batches), on_progress, on_event)
     return NewModel(collection.id, result.recipe, result.weights_key, revision_ids)
 
 
 def _train(
-    workspace: Workspace, batches: Iterable[TrainingBatch], on_progress: Callable[[int, int], None]
+    workspace: Workspace,
+    batches: Iterable[TrainingBatch],
+    on_progress: Callable[[int, int], None],
+    on_event: OnEvent,
 ) -> tuple[TrainingResult, tuple[int, ...]]:
     """The model, and the revisions that it learned from."""
     config = workspace.config.train
@@ -204,9 +219,10 @@ def _train(
             part_ids |= batch.part_ids
             revision_ids += batch.revision_ids
         pending = actor.fit.remote(tuple(sorted(part_ids)), recipe_of(config), refinement, n_threads)
-        return _wait(actor, pending, on_progress), tuple(revision_ids)
+        return _wait(actor, pending, on_progress, on_event), tuple(revision_ids)
     finally:
         ray.kill(actor)
+        on_event(ActorMemory(0, 0))
 
 
 @contextmanager
@@ -274,9 +290,13 @@ def recipe_of(config: TrainConfig) -> Recipe:
 
 
 def _wait(
-    actor: Any, pending: ray.ObjectRef[TrainingResult], on_progress: Callable[[int, int], None]
+    actor: Any,
+    pending: ray.ObjectRef[TrainingResult],
+    on_progress: Callable[[int, int], None],
+    on_event: OnEvent,
 ) -> TrainingResult:
     while not ray.wait([pending], timeout=POLL_S)[0]:
+        on_event(ActorMemory(1, _result(actor.resident_bytes.remote())))
         done, n_total = _result(actor.progress.remote())
         if n_total:
             on_progress(done, n_total)

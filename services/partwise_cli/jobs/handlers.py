@@ -60,7 +60,7 @@ def train(work: Work) -> None:
         work.pulse.raise_if_stopped()
 
     work.connect()
-    model = trained_model(work.workspace, work.collection, on_progress)
+    model = trained_model(work.workspace, work.collection, on_progress, work.on_event)
     work.workspace.catalog.finish_training(work.job.id, work.owner, model)
 
 

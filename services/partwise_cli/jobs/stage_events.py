@@ -22,6 +22,7 @@ class StageTally:
 
     def on_event(self, event: RunEvent, /) -> None:
         """Implements `OnEvent`."""
+        self._work.on_event(event)
         match event:
             case StageDone(stage):
                 self._counts.setdefault(stage, [0, 0])[0] += 1

@@ -9,6 +9,7 @@ from partwise.store.records import Collection as ShapeCollection
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.workspace import Workspace
 from partwise_cli.jobs.pulse import Pulse
+from partwise_workers.events import OnEvent
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,7 @@ class Work:
 
     owner : whose it is, as the catalog has it. kinds, collection_id : which jobs that owner takes, of which collection.
     connect : starts Ray, or joins a cluster, unless that was done for an earlier job.
+    on_event : told what runs tell, whatever the job.
     """
 
     workspace: Workspace
@@ -35,6 +37,7 @@ class Work:
     collection_id: int | None
     pulse: Pulse
     connect: Callable[[], None]
+    on_event: OnEvent
 
     def tell(self, run: RunProgress) -> None:
         """How far a run over shapes is."""

@@ -14,6 +14,7 @@ from partwise.store.records import Job, JobKind, JobState
 from partwise.workspace.workspace import Workspace
 from partwise_cli.failures import ending_of, is_of_ray
 from partwise_cli.jobs.cluster import Cluster
+from partwise_cli.jobs.presence import Presence
 from partwise_cli.jobs.pulse import Pulse
 from partwise_cli.jobs.stopping import JobStoppedError, StopReason
 from partwise_cli.jobs.work import Handler, Work
@@ -56,6 +57,7 @@ class Worker:
         self._collection_id = collection_id
         self._cluster = cluster
         self._on_job = on_job
+        self._presence = Presence(workspace.catalog, self.owner, workspace.array_url)
         self._never = threading.Event()
 
     def run(self, *, once: bool = False) -> None:
@@ -64,20 +66,24 @@ class Worker:
         A catalog that cannot be reached is waited for, unless `once`.
         """
         try:
-            while True:
-                try:
-                    has_worked = self.work_once()
-                except StoreError as error:
-                    if once:
-                        raise
-                    logger.warning("waiting for the catalog: %s", error)
-                    has_worked = False
-                if once and not has_worked:
-                    return
-                if not has_worked:
-                    self._never.wait(self._workspace.config.jobs.poll_s)
+            with self._presence:
+                self._go_on(once)
         finally:
             self._let_go()
+
+    def _go_on(self, once: bool) -> None:
+        while True:
+            try:
+                has_worked = self.work_once()
+            except StoreError as error:
+                if once:
+                    raise
+                logger.warning("waiting for the catalog: %s", error)
+                has_worked = False
+            if once and not has_worked:
+                return
+            if not has_worked:
+                self._never.wait(self._workspace.config.jobs.poll_s)
 
     def work_once(self) -> bool:
         """Claims the next job and does it; whether there was one. Jobs of owners that are silent go back before."""
@@ -118,6 +124,7 @@ class Worker:
             self._collection_id,
             pulse,
             self._cluster.connect,
+            self._presence.on_event,
         )
 
     def _stop(self, job: Job, stopped: JobStoppedError) -> None:

@@ -1,16 +1,15 @@
 """/collections/{collection_id}/ops, /rounds, /ops/people: how a collection is doing."""
 
-import shutil
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Query
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import Job, JobState, StageCount
+from partwise.store.records import Job, JobState, SeenWorker, StageCount
 from partwise.store.reviews import FOR_REVIEWERS
+from partwise.workspace.disk import free_bytes
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE, REFINE
 from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import Workspace
@@ -30,10 +29,12 @@ from partwise_service.schemas.operations import (
     RoundsOut,
     StageFigures,
     WorkerFigures,
+    WorkerUsageOut,
 )
 
 MAX_WORKERS = 100
 WINDOW = timedelta(minutes=15)
+SEEN_WITHIN = timedelta(minutes=1)
 router = APIRouter(route_class=AnswerRoute, tags=["operations"])
 
 
@@ -70,7 +71,6 @@ def _measured(workspace: Workspace, collection_id: int) -> OpsOut:
     leases, score_name = catalog.lease_counts(collection_id), catalog.ranking_score(collection_id)
     states, blocks = dict(catalog.state_counts(collection_id)), catalog.block_totals()
     array_bytes = sum(each.n_bytes for each in blocks)
-    running = catalog.jobs(collection_id, state=JobState.RUNNING, limit=MAX_WORKERS)
     return OpsOut(
         measured_at=now,
         states=states,
@@ -87,9 +87,9 @@ def _measured(workspace: Workspace, collection_id: int) -> OpsOut:
         open_reviews=catalog.count_open_reviews(collection_id, reasons=FOR_REVIEWERS),
         blocks=[BlockFigures(kind=each.kind, blocks=each.n_blocks, bytes=each.n_bytes) for each in blocks],
         disk=DiskFigures(
-            database_bytes=catalog.database_bytes(), array_bytes=array_bytes, free_bytes=_free_bytes(workspace)
+            database_bytes=catalog.database_bytes(), array_bytes=array_bytes, free_bytes=free_bytes(workspace.array_url)
         ),
-        workers=[_worker(job, now) for job in running],
+        workers=_workers(catalog, collection_id, now),
     )
 
 
@@ -125,23 +125,26 @@ def _freshness(catalog: Catalog, collection_id: int, score_name: str) -> list[Fr
     ]
 
 
-def _worker(job: Job, now: datetime) -> WorkerFigures:
-    silent_s = None if job.heartbeat_at is None else max(0.0, (now - job.heartbeat_at).total_seconds())
+def _workers(catalog: Catalog, collection_id: int, now: datetime) -> list[WorkerFigures]:
+    """Those that are there, and those that have fallen silent at a job of the collection."""
+    seen = {each.owner: each for each in catalog.workers(now - SEEN_WITHIN)}
+    jobs = {job.owner or "": job for job in catalog.jobs(collection_id, state=JobState.RUNNING, limit=MAX_WORKERS)}
+    return [_worker(owner, seen.get(owner), jobs.get(owner), now) for owner in sorted(seen.keys() | jobs.keys())]
+
+
+def _worker(owner: str, seen: SeenWorker | None, job: Job | None, now: datetime) -> WorkerFigures:
+    signs = [None if job is None else job.heartbeat_at, None if seen is None else seen.seen_at]
+    last = max((sign for sign in signs if sign is not None), default=None)
     return WorkerFigures(
-        owner=job.owner or "",
-        job_id=job.id,
-        job_kind=job.kind,
-        heartbeat_at=job.heartbeat_at,
-        silent_s=silent_s,
-        done=job.progress.n_done,
-        total=job.progress.n_total,
+        owner=owner,
+        is_busy=job is not None or (seen is not None and seen.is_busy),
+        job_id=None if job is None else job.id,
+        job_kind=None if job is None else job.kind,
+        silent_s=None if last is None else max(0.0, (now - last).total_seconds()),
+        done=None if job is None else job.progress.n_done,
+        total=None if job is None else job.progress.n_total,
+        usage=None if seen is None else WorkerUsageOut.model_validate(seen.usage),
     )
-
-
-def _free_bytes(workspace: Workspace) -> int | None:
-    """Where the array store is a folder of this machine."""
-    folder = Path(workspace.array_url.removeprefix("file://"))
-    return shutil.disk_usage(folder).free if folder.is_dir() else None
 
 
 def _position(stage: str) -> int:

@@ -62,16 +62,35 @@ class DiskFigures(Answer):
     free_bytes: int | None
 
 
+class WorkerUsageOut(Answer):
+    """What a worker takes of its machine. memory_bytes : of its own process, in RAM.
+
+    n_actors, actor_bytes : of the processes that compute for it, wherever they run. free_bytes : left on the disk of
+    the array store where that is a folder of its machine; null elsewhere.
+    """
+
+    memory_bytes: int
+    n_actors: int
+    actor_bytes: int
+    free_bytes: int | None
+
+
 class WorkerFigures(Answer):
-    """Who works on a job. silent_s : seconds since its last sign of life; long ones are taken over by others."""
+    """A worker, at a job or waiting for one. silent_s : seconds since its last sign of life; the jobs of one that is
+    silent for long are taken over by others.
+
+    is_busy : it is at a job; job_id, job_kind, done, total : of that, where it is one of the collection, else null.
+    usage : null where it has not told it lately.
+    """
 
     owner: str
-    job_id: int
-    job_kind: JobKind
-    heartbeat_at: datetime | None
+    is_busy: bool
+    job_id: int | None
+    job_kind: JobKind | None
     silent_s: float | None
-    done: int
+    done: int | None
     total: int | None
+    usage: WorkerUsageOut | None
 
 
 class OpsOut(Answer):

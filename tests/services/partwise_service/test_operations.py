@@ -18,6 +18,7 @@ from partwise.store.records import (
     Progress,
     RevisionKind,
     Role,
+    WorkerUsage,
 )
 from partwise.testing.workspaces import publish_evaluation, save_model
 from partwise.workspace.confirming import begin_draft
@@ -124,6 +125,25 @@ def test_workers_show_by_their_jobs(workspace, mugs, ops) -> None:
     (worker,) = ops()["workers"]
     assert (worker["owner"], worker["job_kind"], worker["done"], worker["total"]) == ("node-7", "evaluate", 2, 3)
     assert worker["silent_s"] >= 0
+    assert (worker["is_busy"], worker["usage"]) == (True, None)
+
+
+def test_workers_tell_what_they_take_at_work_or_not(workspace, mugs, ops) -> None:
+    catalog = workspace.catalog
+    catalog.enqueue_job(mugs.other_id, JobKind.TRAIN)
+    catalog.claim_job("node-8")
+    catalog.note_worker("node-7", WorkerUsage(10**9, 2, 3 * 10**9, 10**12))
+    catalog.note_worker("node-8", WorkerUsage(10**8))
+    idle, elsewhere = ops()["workers"]
+    assert (idle["owner"], idle["is_busy"], idle["job_id"]) == ("node-7", False, None)
+    assert idle["usage"] == {
+        "memory_bytes": 10**9,
+        "n_actors": 2,
+        "actor_bytes": 3 * 10**9,
+        "free_bytes": 10**12,
+    }
+    assert (elsewhere["is_busy"], elsewhere["job_id"], elsewhere["done"]) == (True, None, None)
+    assert elsewhere["usage"]["free_bytes"] is None
 
 
 def test_figures_are_kept_for_some_seconds(workspace, mugs, clock, ops) -> None:

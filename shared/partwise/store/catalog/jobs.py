@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any, Protocol
 
-from partwise.store.records import Job, JobKind, JobState, Model, NewModel, Progress
+from partwise.store.records import Job, JobKind, JobState, Model, NewModel, Progress, SeenWorker, WorkerUsage
 
 
 class JobCatalog(Protocol):
@@ -87,4 +87,16 @@ class JobCatalog(Protocol):
         One that was begun `max_attempts` times fails. One beside which another of its kind waits is cancelled, as that
         one does its work.
         """
+        ...
+
+    def note_worker(self, owner: str, usage: WorkerUsage) -> None:
+        """A process that does jobs is there, and takes this; it says so again every few seconds."""
+        ...
+
+    def forget_worker(self, owner: str) -> None:
+        """It has ended."""
+        ...
+
+    def workers(self, seen_since: datetime) -> Sequence[SeenWorker]:
+        """Those that have said since then that they are there, by owner."""
         ...

@@ -19,7 +19,16 @@ from partwise.store.records.confirmations import (
 from partwise.store.records.drafts import Draft, DraftOutcome, NewDraft, StoredStroke
 from partwise.store.records.events import Event, EventBounds, EventKind, NewEvent
 from partwise.store.records.figures import BlockTotal, LeaseCounts, ModelRound, PersonFigures
-from partwise.store.records.jobs import BACKGROUND_KINDS, COALESCED_KINDS, Job, JobKind, JobState, Progress
+from partwise.store.records.jobs import (
+    BACKGROUND_KINDS,
+    COALESCED_KINDS,
+    Job,
+    JobKind,
+    JobState,
+    Progress,
+    SeenWorker,
+    WorkerUsage,
+)
 from partwise.store.records.labels import Effort, LabelRevision, NewRevision, RevisionKind
 from partwise.store.records.leases import (
     DEFAULT_RANKING,
@@ -145,6 +154,7 @@ __all__ = [
     "Role",
     "RunStatus",
     "Score",
+    "SeenWorker",
     "Shape",
     "ShapeFilter",
     "ShapeOrder",
@@ -154,5 +164,6 @@ __all__ = [
     "StageRun",
     "StoredStroke",
     "Token",
+    "WorkerUsage",
     "check_lease_time",
 ]

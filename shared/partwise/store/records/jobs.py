@@ -73,3 +73,27 @@ class Job:
     @property
     def is_over(self) -> bool:
         return self.state in (JobState.DONE, JobState.FAILED, JobState.CANCELLED)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkerUsage:
+    """What a process that does jobs takes of its machine, and its run of those of the cluster.
+
+    memory_bytes : of the process itself, in RAM. n_actors, actor_bytes : of the processes that compute for it.
+    free_bytes : left on the disk of the array store; None where that is no folder of its machine.
+    """
+
+    memory_bytes: int
+    n_actors: int = 0
+    actor_bytes: int = 0
+    free_bytes: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SeenWorker:
+    """A process that does jobs. owner : as whose its jobs are on record. is_busy : at one now, of any collection."""
+
+    owner: str
+    usage: WorkerUsage
+    seen_at: datetime
+    is_busy: bool

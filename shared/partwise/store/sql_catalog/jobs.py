@@ -6,7 +6,7 @@ from typing import Any
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import claims, jobs, returns, trainings
+from partwise.store.sql import claims, jobs, returns, trainings, workers
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -68,3 +68,15 @@ class SqlJobCatalog(SqlBase):
     def requeue_lost_jobs(self, silent_since: datetime, *, max_attempts: int = 3) -> Sequence[r.Job]:
         with writing(self._engine) as connection:
             return returns.requeue_lost_jobs(connection, silent_since, max_attempts, self._clock())
+
+    def note_worker(self, owner: str, usage: r.WorkerUsage) -> None:
+        with writing(self._engine) as connection:
+            workers.note_worker(connection, owner, usage, self._clock())
+
+    def forget_worker(self, owner: str) -> None:
+        with writing(self._engine) as connection:
+            workers.forget_worker(connection, owner)
+
+    def workers(self, seen_since: datetime) -> Sequence[r.SeenWorker]:
+        with reading(self._engine) as connection:
+            return workers.workers(connection, seen_since)

@@ -18,6 +18,7 @@ from partwise.store.records import (
     NewEvent,
     NewModel,
     Progress,
+    WorkerUsage,
 )
 from partwise.testing.catalog.samples import add_collection
 from partwise.testing.expect import raises
@@ -259,6 +260,28 @@ class JobConformance:
         for use in uses:
             with raises(NotFoundError, "99"):
                 use()
+
+    def test_workers_are_there_until_they_say_otherwise(self, catalog: Catalog) -> None:
+        usage = WorkerUsage(10**10, 2, 3 * 10**10, None)
+        for owner, taken in (("w1", WorkerUsage(1)), ("w1", usage), ("w2", WorkerUsage(5, free_bytes=7))):
+            catalog.note_worker(owner, taken)
+        long_ago = datetime.now(UTC) - timedelta(hours=1)
+        assert {each.owner: each.usage for each in catalog.workers(long_ago)} == {
+            "w1": usage,
+            "w2": WorkerUsage(5, 0, 0, 7),
+        }
+        assert catalog.workers(_later()) == []
+        catalog.forget_worker("w1")
+        assert [each.owner for each in catalog.workers(long_ago)] == ["w2"]
+
+    def test_a_worker_is_busy_while_a_job_is_its_own(self, catalog: Catalog) -> None:
+        job = _running(catalog)
+        for owner in ("w1", "w2"):
+            catalog.note_worker(owner, WorkerUsage(1))
+        long_ago = datetime.now(UTC) - timedelta(hours=1)
+        assert {each.owner: each.is_busy for each in catalog.workers(long_ago)} == {"w1": True, "w2": False}
+        catalog.finish_job(job.id, "w1", JobState.DONE)
+        assert not any(each.is_busy for each in catalog.workers(long_ago))
 
 
 class EventConformance:

@@ -75,7 +75,7 @@ def test_preprocessing_tells_how_far_its_stages_are(do, workspace, preprocessing
 
 
 def test_a_training_publishes_its_model_with_its_end(do, workspace, collection_id, monkeypatch) -> None:
-    def train(workspace, collection, on_progress) -> NewModel:
+    def train(workspace, collection, on_progress, on_event) -> NewModel:
         on_progress(1, 2)
         return NewModel(collection.id, {}, "models/x.safetensors", ())
 
@@ -86,7 +86,7 @@ def test_a_training_publishes_its_model_with_its_end(do, workspace, collection_i
 
 
 def test_a_cancelled_training_leaves_no_model(do, workspace, collection_id, monkeypatch) -> None:
-    def train(workspace, collection, on_progress) -> NewModel:
+    def train(workspace, collection, on_progress, on_event) -> NewModel:
         (job,) = workspace.catalog.jobs(collection_id)
         workspace.catalog.cancel_job(job.id)
         while True:  # until it is told, by what the callback raises

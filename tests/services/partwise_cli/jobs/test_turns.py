@@ -7,6 +7,7 @@ from partwise_cli.jobs.pulse import Pulse
 from partwise_cli.jobs.stopping import JobStoppedError, StopReason
 from partwise_cli.jobs.turns import CHECK_S, SLICE_S, Turn
 from partwise_cli.jobs.work import Work
+from partwise_workers.events import ignore_events
 
 
 class Clock:
@@ -24,7 +25,7 @@ def clock() -> Clock:
 def _work(workspace, job: Job, kinds=tuple(JobKind)) -> Work:
     pulse = Pulse(workspace.catalog, job, "w1", workspace.config.jobs)
     collection = workspace.catalog.get_collection("mugs")
-    return Work(workspace, collection, job, "w1", kinds, None, pulse, lambda: None)
+    return Work(workspace, collection, job, "w1", kinds, None, pulse, lambda: None, ignore_events)
 
 
 @pytest.fixture

@@ -28,7 +28,7 @@ export function KeyFigures({ ops }: { ops: Ops }) {
       <Figure name="In someone’s hands" value={whole(queue.held)}>
         {queue.assigned > 0 ? `${whole(queue.assigned)} kept for one person` : "now"}
       </Figure>
-      <Figure name="Open reviews" value={ops.open_reviews >= 1000 ? "1,000+" : whole(ops.open_reviews)}>
+      <Figure name="Open reviews" value={whole(ops.open_reviews)}>
         {ops.open_reviews === 0 ? "none to look at" : "wait for a reviewer"}
       </Figure>
       <Figure name="Failures" value={whole(failed)} isBad={failed > 0}>

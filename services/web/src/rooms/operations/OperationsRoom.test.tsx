@@ -104,6 +104,23 @@ it("names the tab and shows key figures", async () => {
   expect(document.title).toBe("Operations · chairs · Partwise");
 });
 
+it("tells what workers take, at a job or not", async () => {
+  const idle = { owner: "node-1:7:a", is_busy: false, job_id: null, job_kind: null, silent_s: 3, done: null };
+  const usage = { memory_bytes: 4e8, n_actors: 2, actor_bytes: 3.1e9, free_bytes: null };
+  const silent = { ...idle, owner: "node-2:7:b", is_busy: true, silent_s: 90, usage: null };
+  service.answers[`${IN}/ops`] = () => ({
+    ...OPS,
+    workers: [
+      { ...idle, total: null, usage },
+      { ...silent, total: 12, job_id: 4, job_kind: "evaluate", done: 5 },
+    ],
+  });
+  show();
+  const row = async (name: string) => (await screen.findByText(name)).closest("tr")?.textContent;
+  expect(await row("node-1:7:a")).toBe("node-1:7:aWaits for a job–400 MB3.1 GB in 2 processes–3 s ago");
+  expect(await row("node-2:7:b")).toBe("node-2:7:bScore shapes5 of 12–––silent for 1 min");
+});
+
 it("says what to do where figures cannot be read, and keeps the lists", async () => {
   service.answers[`${IN}/ops`] = () => {
     throw new Problem({

@@ -41,8 +41,8 @@ export function OperationsRoom({ collectionId }: RoomProps) {
         <LeasesPanel collectionId={collectionId} />
         <PeoplePanel collectionId={collectionId} className={styles.whole} />
         <RoundsPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
-        {hasFigures && <WorkersPanel ops={ops.data} />}
-        {hasFigures && <StoragePanel ops={ops.data} />}
+        {hasFigures && <WorkersPanel ops={ops.data} className={styles.whole} />}
+        {hasFigures && <StoragePanel ops={ops.data} className={styles.whole} />}
       </div>
     </div>
   );

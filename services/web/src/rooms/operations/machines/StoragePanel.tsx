@@ -15,10 +15,15 @@ const COLUMNS: readonly Column<Block>[] = [
 ];
 
 /** What the workspace takes, of all collections, and what is left. */
-export function StoragePanel({ ops }: { ops: Ops | undefined }) {
+export function StoragePanel({ ops, className }: { ops: Ops | undefined; className?: string | undefined }) {
   const disk = ops?.disk;
   return (
-    <Panel title="Storage" description="Of the whole workspace, with all its collections." isFlush>
+    <Panel
+      title="Storage"
+      className={className}
+      description="Of the whole workspace, with all its collections."
+      isFlush
+    >
       {disk && (
         <dl className={styles.figures}>
           <Figure name="Catalog" value={bytes(disk.database_bytes)} />
