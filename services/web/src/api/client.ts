@@ -5,8 +5,9 @@
  * Both throw `Problem` for what the service refuses and `Unreachable` where it does not answer.
  */
 import createClient, { type Middleware } from "openapi-fetch";
+import { readArrays } from "./arrays";
 import { Problem, problemOf, Unreachable } from "./problem";
-import { type Arrays, parseSafetensors } from "./safetensors";
+import type { Arrays } from "./safetensors";
 import type { components, paths } from "./schema";
 import { announceSessionEnd } from "./sessionEnd";
 
@@ -35,19 +36,10 @@ export async function body<T>(call: Promise<{ data?: T | undefined }>): Promise<
 
 /** Arrays and the strings that describe them, from a path below /api/v1 that answers safetensors. */
 export async function fetchArrays(path: string, init: RequestInit = {}): Promise<Arrays> {
-  const headers = new Headers(init.headers);
-  headers.set("Accept", "application/vnd.safetensors, application/octet-stream");
-  const response = await reach(`/api/v1${path}`, { ...init, headers, credentials: "same-origin" });
-  if (response.status === UNAUTHENTICATED) announceSessionEnd();
-  if (!response.ok) throw await problemOf(response);
-  return parseSafetensors(await response.arrayBuffer());
-}
-
-async function reach(url: string, init: RequestInit): Promise<Response> {
   try {
-    return await fetch(url, init);
+    return await readArrays(path, init);
   } catch (error) {
-    if (error instanceof DOMException && error.name === "AbortError") throw error;
-    throw new Unreachable(error);
+    if (error instanceof Problem && error.status === UNAUTHENTICATED) announceSessionEnd();
+    throw error;
   }
 }

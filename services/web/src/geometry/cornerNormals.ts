@@ -10,26 +10,45 @@ export function cornerNormals(vertices: Float32Array, faces: Uint32Array, crosse
   for (let edge = 0; edge < faces.length; edge += 1) {
     const vertex = 3 * (faces[edge] as number);
     const face = edge - (edge % 3);
-    for (let axis = 0; axis < 3; axis += 1) {
-      atVertices[vertex + axis] = (atVertices[vertex + axis] as number) + (crosses[face + axis] as number);
-    }
+    atVertices[vertex] = (atVertices[vertex] as number) + (crosses[face] as number);
+    atVertices[vertex + 1] = (atVertices[vertex + 1] as number) + (crosses[face + 1] as number);
+    atVertices[vertex + 2] = (atVertices[vertex + 2] as number) + (crosses[face + 2] as number);
   }
+  toUnits(atVertices);
+  const units = crosses.slice();
+  toUnits(units);
   const normals = new Int16Array(4 * faces.length);
   for (let corner = 0; corner < faces.length; corner += 1) {
     const face = corner - (corner % 3);
-    const own = unit(crosses, face);
-    const round = unit(atVertices, 3 * (faces[corner] as number));
-    const isRound = own[0] * round[0] + own[1] * round[1] + own[2] * round[2] > SMOOTHING_COSINE;
-    const [x, y, z] = isRound ? round : own;
-    normals[4 * corner] = x * FULL;
-    normals[4 * corner + 1] = y * FULL;
-    normals[4 * corner + 2] = z * FULL;
+    const vertex = 3 * (faces[corner] as number);
+    let x = atVertices[vertex] as number;
+    let y = atVertices[vertex + 1] as number;
+    let z = atVertices[vertex + 2] as number;
+    const ownX = units[face] as number;
+    const ownY = units[face + 1] as number;
+    const ownZ = units[face + 2] as number;
+    if (!(ownX * x + ownY * y + ownZ * z > SMOOTHING_COSINE)) {
+      x = ownX;
+      y = ownY;
+      z = ownZ;
+    }
+    const at = 4 * corner;
+    normals[at] = x * FULL;
+    normals[at + 1] = y * FULL;
+    normals[at + 2] = z * FULL;
   }
   return normals;
 }
 
-function unit(values: Float64Array | Float32Array, at: number): [number, number, number] {
-  const [x, y, z] = [values[at] as number, values[at + 1] as number, values[at + 2] as number];
-  const length = Math.sqrt(x * x + y * y + z * z) || 1;
-  return [x / length, y / length, z / length];
+/** Scales vectors (3n), in place; those of no length stay. */
+function toUnits(vectors: Float64Array | Float32Array): void {
+  for (let at = 0; at < vectors.length; at += 3) {
+    const x = vectors[at] as number;
+    const y = vectors[at + 1] as number;
+    const z = vectors[at + 2] as number;
+    const length = Math.sqrt(x * x + y * y + z * z) || 1;
+    vectors[at] = x / length;
+    vectors[at + 1] = y / length;
+    vectors[at + 2] = z / length;
+  }
 }

@@ -23,14 +23,24 @@ export function measureFaces(vertices: Float32Array, faces: Uint32Array): FaceMe
     const a = 3 * (faces[at] as number);
     const b = 3 * (faces[at + 1] as number);
     const c = 3 * (faces[at + 2] as number);
-    const [ax, ay, az] = [vertices[a] as number, vertices[a + 1] as number, vertices[a + 2] as number];
-    const [bx, by, bz] = [vertices[b] as number, vertices[b + 1] as number, vertices[b + 2] as number];
-    const [cx, cy, cz] = [vertices[c] as number, vertices[c + 1] as number, vertices[c + 2] as number];
+    const ax = vertices[a] as number;
+    const ay = vertices[a + 1] as number;
+    const az = vertices[a + 2] as number;
+    const bx = vertices[b] as number;
+    const by = vertices[b + 1] as number;
+    const bz = vertices[b + 2] as number;
+    const cx = vertices[c] as number;
+    const cy = vertices[c + 1] as number;
+    const cz = vertices[c + 2] as number;
     centroids[at] = (ax + bx + cx) / 3; // added from the left, as specified
     centroids[at + 1] = (ay + by + cy) / 3;
     centroids[at + 2] = (az + bz + cz) / 3;
-    const [ux, uy, uz] = [bx - ax, by - ay, bz - az];
-    const [vx, vy, vz] = [cx - ax, cy - ay, cz - az];
+    const ux = bx - ax;
+    const uy = by - ay;
+    const uz = bz - az;
+    const vx = cx - ax;
+    const vy = cy - ay;
+    const vz = cz - az;
     const nx = uy * vz - uz * vy;
     const ny = uz * vx - ux * vz;
     const nz = ux * vy - uy * vx;
@@ -43,18 +53,20 @@ export function measureFaces(vertices: Float32Array, faces: Uint32Array): FaceMe
 }
 
 function measureBox(vertices: Float32Array, faces: Uint32Array): Pick<FaceMeasures, "diagonal" | "centre"> {
-  const low: [number, number, number] = [Infinity, Infinity, Infinity];
-  const high: [number, number, number] = [-Infinity, -Infinity, -Infinity];
-  for (const corner of faces) {
-    for (const axis of [0, 1, 2] as const) {
-      const value = vertices[3 * corner + axis] as number;
-      if (value < low[axis]) low[axis] = value;
-      if (value > high[axis]) high[axis] = value;
+  const [low, high] = [new Float64Array(3).fill(Infinity), new Float64Array(3).fill(-Infinity)];
+  for (let corner = 0; corner < faces.length; corner += 1) {
+    const vertex = 3 * (faces[corner] as number);
+    for (let axis = 0; axis < 3; axis += 1) {
+      const value = vertices[vertex + axis] as number;
+      if (value < (low[axis] as number)) low[axis] = value;
+      if (value > (high[axis] as number)) high[axis] = value;
     }
   }
-  const [ex, ey, ez] = [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
+  const [lx, ly, lz] = low as unknown as [number, number, number];
+  const [hx, hy, hz] = high as unknown as [number, number, number];
+  const [ex, ey, ez] = [hx - lx, hy - ly, hz - lz];
   return {
     diagonal: Math.sqrt(ex * ex + ey * ey + ez * ez),
-    centre: [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2],
+    centre: [(lx + hx) / 2, (ly + hy) / 2, (lz + hz) / 2],
   };
 }

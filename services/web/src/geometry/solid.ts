@@ -38,19 +38,28 @@ export function isSolid(vertices: Float32Array, faces: Uint32Array, opposite: In
 function isRunBackward(faces: Uint32Array, edge: number, face: number): boolean {
   const from = faces[edge];
   const to = faces[edge % 3 === 2 ? edge - 2 : edge + 1];
-  const [a, b, c] = [faces[3 * face], faces[3 * face + 1], faces[3 * face + 2]];
+  const a = faces[3 * face];
+  const b = faces[3 * face + 1];
+  const c = faces[3 * face + 2];
   return (a === to && b === from) || (b === to && c === from) || (c === to && a === from);
 }
 
 /** Six times the volume between a face and a point (the start of a vertex), below 0 where the face looks at it. */
 function volumeBelow(vertices: Float32Array, faces: Uint32Array, face: number, origin: number): number {
-  const corner = (k: number): [number, number, number] => {
-    const at = 3 * (faces[3 * face + k] as number);
-    const from = (axis: number) => (vertices[at + axis] as number) - (vertices[origin + axis] as number);
-    return [from(0), from(1), from(2)];
-  };
-  const [ax, ay, az] = corner(0);
-  const [bx, by, bz] = corner(1);
-  const [cx, cy, cz] = corner(2);
+  const a = 3 * (faces[3 * face] as number);
+  const b = 3 * (faces[3 * face + 1] as number);
+  const c = 3 * (faces[3 * face + 2] as number);
+  const ox = vertices[origin] as number;
+  const oy = vertices[origin + 1] as number;
+  const oz = vertices[origin + 2] as number;
+  const ax = (vertices[a] as number) - ox;
+  const ay = (vertices[a + 1] as number) - oy;
+  const az = (vertices[a + 2] as number) - oz;
+  const bx = (vertices[b] as number) - ox;
+  const by = (vertices[b + 1] as number) - oy;
+  const bz = (vertices[b + 2] as number) - oz;
+  const cx = (vertices[c] as number) - ox;
+  const cy = (vertices[c + 1] as number) - oy;
+  const cz = (vertices[c + 2] as number) - oz;
   return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
 }

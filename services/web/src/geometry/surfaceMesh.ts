@@ -28,7 +28,8 @@ export class SurfaceMesh {
       );
     }
     let largest = 0;
-    for (const corner of faces) if (corner > largest) largest = corner;
+    for (let at = 0; at < faces.length; at += 1)
+      if ((faces[at] as number) > largest) largest = faces[at] as number;
     if (largest >= this.nVertices) {
       throw new RangeError(`faces must name vertices 0 to ${this.nVertices - 1} but name ${largest}`);
     }

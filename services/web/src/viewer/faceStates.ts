@@ -85,10 +85,10 @@ export class FaceStates {
   }
 
   #paint(face: number): void {
-    const [red, green, blue] = this.#colourOf(face);
-    this.bytes[4 * face] = red;
-    this.bytes[4 * face + 1] = green;
-    this.bytes[4 * face + 2] = blue;
+    const colour = this.#colourOf(face);
+    this.bytes[4 * face] = colour[0];
+    this.bytes[4 * face + 1] = colour[1];
+    this.bytes[4 * face + 2] = colour[2];
   }
 
   #colourOf(face: number): Rgb {

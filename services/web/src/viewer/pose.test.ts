@@ -1,4 +1,4 @@
-import { Quaternion, Vector3 } from "three";
+import { Matrix4, Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import {
   FIELD_OF_VIEW,
@@ -81,7 +81,8 @@ describe("framing", () => {
   const cube = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => new Vector3(x, y, z))));
 
   it.each([0.5, 1, 2])("shows all points closely in a view of aspect %s", (aspect) => {
-    const pose = framed(namedOrientation("threeQuarter"), cube, aspect);
+    const points = Float32Array.from(cube.flatMap((corner) => [...corner]));
+    const pose = framed(namedOrientation("threeQuarter"), points, new Matrix4(), aspect);
     const places = cube.map((point) => seen(pose, point));
     const right = Math.max(...places.map(([x]) => Math.abs(x))) / aspect;
     const up = Math.max(...places.map(([, y]) => Math.abs(y)));

@@ -2,7 +2,7 @@
  * Where a camera is, in terms that fit every shape: turned from the front with up up, and in diagonals from the middle.
  * So the pose of one shape can be given to another, and all here is arithmetic.
  */
-import { Quaternion, Vector3 } from "three";
+import { Matrix4, Quaternion, Vector3 } from "three";
 
 export type UpAxis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 export type Manner = "turntable" | "trackball";
@@ -91,30 +91,37 @@ export function uprightRotation(up: UpAxis): Quaternion {
 }
 
 /**
- * The pose that frames points closely from where the camera looks now. points : from the shape's middle, in diagonals,
- * right, up, front. aspect : width over height of the view. margin : free share on each side.
+ * The pose that frames points closely from where the camera looks now. points : (3n), in any coordinates. place : from
+ * these to right, up, front, in diagonals from the shape's middle. aspect : width over height of the view. margin : free
+ * share on each side.
  */
 export function framed(
   orientation: Quaternion,
-  points: Iterable<Vector3>,
+  points: Float32Array,
+  place: Matrix4,
   aspect: number,
   margin = 0.06,
 ): Pose {
-  const back = orientation.clone().invert();
+  const back = new Matrix4().makeRotationFromQuaternion(orientation.clone().invert()).multiply(place);
+  const [xx, yx, zx, , xy, yy, zy, , xz, yz, zz, , x0, y0, z0] = back.elements;
   const slopeUp = Math.tan(FIELD_OF_VIEW / 2) * (1 - 2 * margin);
   const slopeAside = slopeUp * aspect;
-  const local = new Vector3();
-  const most = { right: -Infinity, left: -Infinity, up: -Infinity, down: -Infinity };
-  for (const point of points) {
-    local.copy(point).applyQuaternion(back);
-    most.right = Math.max(most.right, local.x / slopeAside + local.z);
-    most.left = Math.max(most.left, -local.x / slopeAside + local.z);
-    most.up = Math.max(most.up, local.y / slopeUp + local.z);
-    most.down = Math.max(most.down, -local.y / slopeUp + local.z);
+  let [right, left, up, down] = [-Infinity, -Infinity, -Infinity, -Infinity];
+  for (let at = 0; at < points.length; at += 3) {
+    const px = points[at] as number;
+    const py = points[at + 1] as number;
+    const pz = points[at + 2] as number;
+    const x = (xx * px + xy * py + xz * pz + x0) / slopeAside;
+    const y = (yx * px + yy * py + yz * pz + y0) / slopeUp;
+    const z = zx * px + zy * py + zz * pz + z0;
+    if (x + z > right) right = x + z;
+    if (z - x > left) left = z - x;
+    if (y + z > up) up = y + z;
+    if (z - y > down) down = z - y;
   }
   // The camera at (x, y, distance) sees all when right ≤ distance + x / slope, left ≤ distance − x / slope, and so on.
-  const distance = Math.max((most.right + most.left) / 2, (most.up + most.down) / 2, NEAREST);
-  const aside = ((most.right - most.left) / 2) * slopeAside;
-  const above = ((most.up - most.down) / 2) * slopeUp;
+  const distance = Math.max((right + left) / 2, (up + down) / 2, NEAREST);
+  const aside = ((right - left) / 2) * slopeAside;
+  const above = ((up - down) / 2) * slopeUp;
   return { orientation, offset: new Vector3(aside, above, 0).applyQuaternion(orientation), distance };
 }

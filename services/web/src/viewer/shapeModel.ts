@@ -19,7 +19,8 @@ import {
 import type { SurfaceMesh } from "../geometry/surfaceMesh";
 import { type Palette, rgbOf } from "./colours";
 import { FaceStates } from "./faceStates";
-import type { PreparedMesh } from "./prepareMesh";
+import type { PreparedMesh } from "./preparedMesh";
+import type { MeshBVH } from "./searchTree";
 import { FRAGMENT_SHADER, STATES_WIDTH, VERTEX_SHADER } from "./shapeShaders";
 
 /** Where a pointer meets a surface. point : in the mesh's coordinates. */
@@ -41,22 +42,27 @@ export interface ModelOptions {
 
 export class ShapeModel {
   readonly mesh: SurfaceMesh;
+  /** (3k) What a view has to frame, in the mesh's coordinates. */
+  readonly outline: Float32Array;
   readonly scene = new Scene();
   /** Called whenever something must be drawn anew; the views that show the shape listen. */
   readonly changed = new Set<() => void>();
-  readonly #prepared: PreparedMesh;
+  #tree: MeshBVH | null = null;
   #since: number | null;
   readonly #geometry: BufferGeometry;
   readonly #texture: DataTexture;
   readonly #states: FaceStates;
+  readonly #prepared: PreparedMesh;
   readonly #side: typeof FrontSide | typeof DoubleSide;
   readonly #uniforms: Uniforms;
   readonly #material: ShaderMaterial;
 
   constructor(prepared: PreparedMesh, { since }: ModelOptions = {}) {
+    const { mesh, surface } = prepared;
     this.#prepared = prepared;
-    this.mesh = prepared.mesh;
-    this.#side = prepared.isSolid ? FrontSide : DoubleSide;
+    this.mesh = mesh;
+    this.outline = surface.outline;
+    this.#side = surface.isSolid ? FrontSide : DoubleSide;
     this.#since = since ?? null;
     const height = Math.ceil(this.mesh.nFaces / STATES_WIDTH);
     this.#states = new FaceStates(this.mesh.graph, 4 * STATES_WIDTH * height, () => this.#upload());
@@ -70,16 +76,23 @@ export class ShapeModel {
       side: this.#side,
       uniforms: this.#uniforms,
     });
-    this.#geometry = shownGeometry(prepared);
-    const surface = new Mesh(this.#geometry, this.#material);
-    surface.matrixAutoUpdate = false;
-    this.scene.add(surface);
+    this.#geometry = shownGeometry(mesh, surface);
+    const shown = new Mesh(this.#geometry, this.#material);
+    shown.matrixAutoUpdate = false;
+    this.scene.add(shown);
     this.scene.matrixWorldAutoUpdate = false;
+  }
+
+  /** From now on, faces are found under a pointer. */
+  pickWith(tree: MeshBVH): void {
+    this.#tree = tree;
   }
 
   /** The same surface once more, to show something else on it. To be disposed by whoever asked. */
   alike(): ShapeModel {
-    return new ShapeModel(this.#prepared);
+    const other = new ShapeModel(this.#prepared);
+    if (this.#tree !== null) other.pickWith(this.#tree);
+    return other;
   }
 
   setPalette(palette: Palette): void {
@@ -132,9 +145,9 @@ export class ShapeModel {
     this.#draw();
   }
 
-  /** The first face along a ray in the mesh's coordinates, of those that are drawn. */
+  /** The first face along a ray in the mesh's coordinates, of those that are drawn; null before `pickWith`, too. */
   hit(ray: Ray): Hit | null {
-    const found = this.#prepared.bvh.raycastFirst(ray, this.#side);
+    const found = this.#tree?.raycastFirst(ray, this.#side);
     if (found?.faceIndex === undefined || found.faceIndex === null) return null;
     return { face: found.faceIndex, point: found.point.toArray() };
   }
@@ -187,12 +200,7 @@ function newUniforms(faces: DataTexture) {
 }
 
 /** Three vertices to a face, in face order, so that a vertex knows its face and a face has colours of its own. */
-function shownGeometry({ mesh, normals }: PreparedMesh): BufferGeometry {
-  const positions = new Float32Array(3 * mesh.faces.length);
-  mesh.faces.forEach((vertex, corner) => {
-    for (let axis = 0; axis < 3; axis += 1)
-      positions[3 * corner + axis] = mesh.vertices[3 * vertex + axis] as number;
-  });
+function shownGeometry(mesh: SurfaceMesh, { positions, normals }: PreparedMesh["surface"]): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   geometry.setAttribute("normal", new BufferAttribute(normals, 4, true));

@@ -1,7 +1,8 @@
 // @vitest-environment jsdom
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { SurfaceMesh } from "../geometry/surfaceMesh";
-import { prepareMesh } from "./prepareMesh";
+import { preparedHere } from "./preparedMesh";
+import { builtTree, readTree } from "./searchTree";
 import { type Hit, ShapeModel } from "./shapeModel";
 import { ShapeView, type ViewListener } from "./shapeView";
 
@@ -23,7 +24,9 @@ function square(): SurfaceMesh {
   return new SurfaceMesh(Float32Array.from(vertices), Uint32Array.from(faces), "square");
 }
 
-const model = new ShapeModel(await prepareMesh(square()));
+const mesh = square();
+const model = new ShapeModel(preparedHere(mesh));
+model.pickWith(readTree(builtTree(mesh), mesh));
 let view: ShapeView;
 let told: string[];
 let hits: Hit[];
@@ -183,6 +186,17 @@ describe("the camera", () => {
     view.zoom(0.2);
     view.element.dispatchEvent(new KeyboardEvent("keydown", { key: "Home", cancelable: true }));
     expect(view.pose.distance).toBeCloseTo(pose.distance, 12);
+  });
+
+  it("fits the shape into another size, unless it was turned or moved", () => {
+    const { distance } = view.pose;
+    view.element.getBoundingClientRect = () => new DOMRect(0, 0, SIZE / 2, SIZE);
+    view.fit();
+    expect(view.pose.distance).toBeCloseTo(2 * distance, 3);
+    view.zoom(0.5);
+    const moved = view.pose;
+    view.fit();
+    expect(view.pose).toBe(moved);
   });
 
   it("tells its stage when it leads, not when it follows", () => {

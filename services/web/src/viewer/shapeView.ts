@@ -1,5 +1,5 @@
 /** One viewport: a camera on a shape, moved by pointer and keys, and the gestures of the tool in hand. */
-import { PerspectiveCamera, type Quaternion, Ray, Vector3, type WebGLRenderer } from "three";
+import { Matrix4, PerspectiveCamera, type Quaternion, Ray, Vector3, type WebGLRenderer } from "three";
 import { NavigationKeys } from "./navigationKeys";
 import { PointerGestures } from "./pointerGestures";
 import {
@@ -58,6 +58,7 @@ export class ShapeView {
   readonly #keys: NavigationKeys;
   readonly #redraw = () => this.#stage.invalidate();
   #model: ShapeModel | null = null;
+  #framed: Pose | null = null;
   #pose: Pose = { orientation: namedOrientation("threeQuarter"), offset: new Vector3(), distance: 2.4 };
 
   constructor(element: HTMLElement, { up, manner = "turntable" }: ViewOptions, stage: StageOfView) {
@@ -108,7 +109,13 @@ export class ShapeView {
   frame(name?: NamedView): void {
     if (this.#model === null) return;
     const orientation = name === undefined ? this.#pose.orientation : namedOrientation(name);
-    this.pose = framed(orientation, this.#points(this.#model), this.#aspect());
+    this.#framed = framed(orientation, this.#model.outline, this.#place(this.#model), this.#aspect());
+    this.pose = this.#framed;
+  }
+
+  /** After the element got another size: a shape that filled its view does so again, one that was moved stays. */
+  fit(): void {
+    if (this.#pose === this.#framed) this.frame();
   }
 
   turn(right: number, down: number): void {
@@ -202,22 +209,12 @@ export class ShapeView {
     camera.updateProjectionMatrix();
   }
 
-  /** The vertices from the middle, in diagonals, right, up, front. */
-  *#points({ mesh }: ShapeModel): Iterable<Vector3> {
-    const back = this.#upright.clone().invert();
+  /** From a mesh's coordinates to right, up, front, in diagonals from its middle. */
+  #place({ mesh }: ShapeModel): Matrix4 {
     const [x, y, z] = mesh.centre;
-    const point = new Vector3();
-    for (const vertex of mesh.faces) {
-      const at = 3 * vertex;
-      point.set(
-        mesh.vertices[at] as number,
-        mesh.vertices[at + 1] as number,
-        mesh.vertices[at + 2] as number,
-      );
-      point.x -= x;
-      point.y -= y;
-      point.z -= z;
-      yield point.divideScalar(mesh.diagonal).applyQuaternion(back);
-    }
+    const back = new Matrix4().makeRotationFromQuaternion(this.#upright.clone().invert());
+    return back
+      .scale(new Vector3().setScalar(1 / mesh.diagonal))
+      .multiply(new Matrix4().makeTranslation(-x, -y, -z));
   }
 }

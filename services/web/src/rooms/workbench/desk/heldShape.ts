@@ -4,14 +4,16 @@ import { DraftSession, type SessionParts } from "../../../drafts/draftSession";
 import { type Lease, leaseApi } from "../../../drafts/leaseApi";
 import { LeaseKeeper, type Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
-import { prepareMesh } from "../../../viewer/prepareMesh";
+import { type ComingMesh, type MeshWish, readMesh } from "../../../viewer/meshReader";
+import { meshOf } from "../../../viewer/preparedMesh";
+import { readTree } from "../../../viewer/searchTree";
 import { ShapeModel } from "../../../viewer/shapeModel";
+import type { PreparedSurface } from "../../../viewer/surfacePreparation";
 import { type Draft, OpenShape } from "../shape/openShape";
 import {
   fetchDraftBase,
   fetchFacts,
   fetchLabels,
-  fetchMesh,
   fetchReworkNote,
   type Segmentation,
   type ShapeFacts,
@@ -37,6 +39,8 @@ interface StartLabels {
 
 interface Loading {
   readonly model: Promise<ShapeModel>;
+  /** Ends once faces of the model are found under a pointer. */
+  readonly pickable: Promise<void>;
   readonly facts: Promise<ShapeFacts>;
   readonly start: Promise<StartLabels | null>;
 }
@@ -70,6 +74,7 @@ export class HeldShape {
     private readonly parts: SessionParts,
     leased: Renewed<Lease>,
     private readonly isNamed: boolean,
+    private readonly read: (wish: MeshWish) => ComingMesh = readMesh,
   ) {
     this.keeper = new LeaseKeeper(leaseApi, parts.clock, leased);
   }
@@ -90,7 +95,11 @@ export class HeldShape {
   /** Fetches what can be had before work begins: mesh, facts, labels to start from. */
   load(opening: Opening, since: number): Loading {
     if (this.loading !== null) return this.loading;
-    const loading = { model: this.shown(since), facts: this.known(), start: this.startLabels(opening.start) };
+    const loading = {
+      ...this.surface(since),
+      facts: this.known(),
+      start: this.startLabels(opening.start),
+    };
     this.loading = loading;
     Promise.all(Object.values(loading)).catch(() => {
       this.loading = null; // `begin` says so; trying again fetches again
@@ -116,6 +125,7 @@ export class HeldShape {
         loading.model,
         this.drafting,
         loading.start,
+        loading.pickable,
       ]);
       const open = await OpenShape.open(model, draft, base, opening.partIds);
       if (this.isClosed) return await open.close();
@@ -129,13 +139,14 @@ export class HeldShape {
     }
   }
 
-  /** Ends once the surface shows, or will not. */
+  /** Ends once the shape shows with its labels, or will not. */
   seen(): Promise<void> {
     return new Promise((resolve) => {
       const stop = this.state.subscribe(check);
       const state = this.state;
       function check() {
-        if (state.get().step === "mesh") return;
+        const { step } = state.get();
+        if (step === "mesh" || step === "labels") return;
         stop();
         resolve();
       }
@@ -160,11 +171,22 @@ export class HeldShape {
     }
   }
 
-  private async shown(since: number): Promise<ShapeModel> {
-    const { mesh_hash, shape_id } = this.lease;
-    if (mesh_hash === null)
+  private surface(since: number): Pick<Loading, "model" | "pickable"> {
+    const coming = this.coming();
+    const model = coming.then(({ surface }) => surface).then((surface) => this.shown(surface, since));
+    const pickable = Promise.all([model, coming.then(({ tree }) => tree)]);
+    return { model, pickable: pickable.then(([shown, tree]) => shown.pickWith(readTree(tree, shown.mesh))) };
+  }
+
+  private async coming(): Promise<ComingMesh> {
+    const { mesh_hash: meshHash, shape_id: shapeId } = this.lease;
+    if (meshHash === null)
       throw new Error("This shape has no surface to label yet. Skip it, or tell the operator.");
-    const model = new ShapeModel(await prepareMesh(await fetchMesh(mesh_hash, shape_id)), { since });
+    return this.read({ meshHash, shapeId });
+  }
+
+  private shown(surface: PreparedSurface, since: number): ShapeModel {
+    const model = new ShapeModel(meshOf(surface, this.lease.mesh_hash as string), { since });
     if (this.state.get().step === "failed")
       model.dispose(); // labels were refused meanwhile; trying again fetches both
     else if (!this.isClosed) this.state.set({ step: "labels", model });

@@ -1,22 +1,12 @@
-/** What the workbench asks the service about one shape: its mesh, labels to start from, and tools. */
+/** What the workbench asks the service about one shape: facts, labels to start from, and tools. */
 import { api, body, fetchArrays, type Schemas } from "../../../api/client";
 import { arrayOf } from "../../../api/safetensors";
-import { SurfaceMesh } from "../../../geometry/surfaceMesh";
 import type { PatchMethod } from "../tools/toolSettings";
 
 export type Segmentation = "predicted" | "refined" | "confirmed";
 export type LabelRun = [label: number, nFaces: number];
 
 const JSON_BODY = { "Content-Type": "application/json" };
-
-export async function fetchMesh(meshHash: string, shapeId: number): Promise<SurfaceMesh> {
-  const file = await fetchArrays(`/meshes/${meshHash}?shape_id=${shapeId}`);
-  return new SurfaceMesh(
-    arrayOf(file, "vertices", Float32Array),
-    arrayOf(file, "faces", Uint32Array),
-    meshHash,
-  );
-}
 
 export interface ShapeFacts {
   readonly state: Schemas["ShapeOut"]["state"];

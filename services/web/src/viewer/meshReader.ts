@@ -1,0 +1,58 @@
+/** A mesh on its way from the service: first what shows it, then what finds its faces under a pointer. */
+import { announceSessionEnd } from "../api/sessionEnd";
+import type { SerializedBVH } from "./searchTree";
+import type { PreparedSurface } from "./surfacePreparation";
+
+export interface MeshWish {
+  readonly meshHash: string;
+  /** A shape that has or had the mesh. */
+  readonly shapeId: number;
+}
+
+/** What the worker tells. status : of the service's refusal; null for any other reason. */
+export type MeshMessage =
+  | { readonly kind: "surface"; readonly surface: PreparedSurface }
+  | { readonly kind: "tree"; readonly tree: SerializedBVH }
+  | { readonly kind: "failed"; readonly why: string; readonly status: number | null };
+
+export interface ComingMesh {
+  readonly surface: Promise<PreparedSurface>;
+  readonly tree: Promise<SerializedBVH>;
+}
+
+const UNAUTHENTICATED = 401;
+
+/** Begins a worker: it takes a while until it listens, so it may begin before it is known which mesh is wanted. */
+export function newMeshWorker(): Worker {
+  return new Worker(new URL("./mesh.worker.ts", import.meta.url), { type: "module" });
+}
+
+/** A worker for each mesh: the next one is read while this one is, and nothing is left of it afterwards. */
+export function readMesh(wish: MeshWish, worker: Worker = newMeshWorker()): ComingMesh {
+  const coming = {
+    surface: message(worker, "surface").then(({ surface }) => surface),
+    tree: message(worker, "tree").then(({ tree }) => tree),
+  };
+  const end = () => worker.terminate();
+  Promise.all([coming.surface, coming.tree]).then(end, end);
+  worker.postMessage(wish);
+  return coming;
+}
+
+type Told<K extends MeshMessage["kind"]> = Extract<MeshMessage, { kind: K }>;
+
+/** The message of one kind, once the worker tells it. Rejects where the worker fails. */
+function message<K extends "surface" | "tree">(worker: Worker, kind: K): Promise<Told<K>> {
+  return new Promise((resolve, reject) => {
+    worker.addEventListener("error", (event) =>
+      reject(new Error(`The shape cannot be shown: ${event.message}`)),
+    );
+    worker.addEventListener("message", ({ data }: MessageEvent<MeshMessage>) => {
+      if (data.kind === kind) resolve(data as Told<K>);
+      else if (data.kind === "failed") {
+        if (data.status === UNAUTHENTICATED) announceSessionEnd();
+        reject(new Error(data.why));
+      }
+    });
+  });
+}
