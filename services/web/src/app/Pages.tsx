@@ -4,12 +4,10 @@ import { collectionsQuery } from "../api/queries";
 import { Button, Notice } from "../components";
 import { CollectionPicker } from "./CollectionPicker";
 import { RoomPage } from "./RoomPage";
+import { ROOM_ADDRESS } from "./roomCode";
 import { ROOMS, roomAddress } from "./rooms";
 import { Opening } from "./shell/Opening";
 import { Shell } from "./shell/Shell";
-
-/** A collection, a room of it, and what a room may add. */
-const ROOM_ADDRESS = /^\/c\/(?<collectionId>\d+)(?:\/(?<room>[^/]+))?(?:\/.*)?$/;
 
 /** What each address shows. Addresses outlive the page: people send them to each other. */
 export function Pages() {

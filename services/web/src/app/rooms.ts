@@ -1,6 +1,7 @@
-/** The rooms, whose code is loaded when they are entered, and who may enter. */
+/** The rooms, and who may enter. */
 import { ChartNoAxesCombined, LayoutGrid, type LucideIcon, PenTool, SlidersHorizontal } from "lucide-react";
 import { type ComponentType, lazy } from "react";
+import { ROOM_CODE } from "./roomCode";
 import type { Role } from "./session/session";
 
 export interface RoomProps {
@@ -25,7 +26,7 @@ export const ROOMS: readonly [Room, ...Room[]] = [
     icon: LayoutGrid,
     role: "annotator",
     purpose: "shows every shape of a collection",
-    View: lazy(async () => ({ default: (await import("../rooms/table/TableRoom")).TableRoom })),
+    View: lazy(ROOM_CODE.table),
   },
   {
     path: "work",
@@ -33,7 +34,7 @@ export const ROOMS: readonly [Room, ...Room[]] = [
     icon: PenTool,
     role: "annotator",
     purpose: "is where shapes are labelled",
-    View: lazy(async () => ({ default: (await import("../rooms/workbench/WorkbenchRoom")).WorkbenchRoom })),
+    View: lazy(ROOM_CODE.work),
   },
   {
     path: "operations",
@@ -41,9 +42,7 @@ export const ROOMS: readonly [Room, ...Room[]] = [
     icon: ChartNoAxesCombined,
     role: "operator",
     purpose: "shows how the machine and the people are doing, and what has failed",
-    View: lazy(async () => ({
-      default: (await import("../rooms/operations/OperationsRoom")).OperationsRoom,
-    })),
+    View: lazy(ROOM_CODE.operations),
   },
   {
     path: "settings",
@@ -51,7 +50,7 @@ export const ROOMS: readonly [Room, ...Room[]] = [
     icon: SlidersHorizontal,
     role: "operator",
     purpose: "is where collections are set up, people get access, and files come in and go out",
-    View: lazy(async () => ({ default: (await import("../rooms/settings/SettingsRoom")).SettingsRoom })),
+    View: lazy(ROOM_CODE.settings),
   },
 ];
 

@@ -9,11 +9,11 @@ import { Button, Notice, Spinner } from "../../components";
 import { useObservable, useObservableOr } from "../../drafts/useObservable";
 import { type OpenedDesk, useDesk } from "./desk/useDesk";
 import { NothingWaits } from "./NothingWaits";
+import { namedShapes } from "./namedShapes";
 import type { Part } from "./parts";
 import { ToolShelf } from "./tools/toolSettings";
 import { Workbench } from "./Workbench";
 import styles from "./WorkbenchRoom.module.css";
-import { namedShapes } from "./workAddress";
 
 const NO_PARTS: readonly Part[] = [];
 

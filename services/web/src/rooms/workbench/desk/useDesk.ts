@@ -1,5 +1,5 @@
 /** The desk of a collection, from entering the room to leaving it. */
-import { useEffect, useRef, useState } from "react";
+import { useContext, useEffect, useRef, useState } from "react";
 import type { ServiceEvent } from "../../../api/events";
 import { onSessionBegin } from "../../../api/sessionEnd";
 import { useServiceEvents } from "../../../app/events/useServiceEvents";
@@ -12,6 +12,7 @@ import { type Lease, leaseApi } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
 import { sendLeftovers } from "../../../drafts/leftovers";
 import { Desk } from "./desk";
+import { HeadStartContext } from "./HeadStartContext";
 import { HeldShape, type Opening } from "./heldShape";
 
 export interface OpenedDesk {
@@ -39,11 +40,13 @@ export function useDesk(
   const latest = useRef(opening);
   latest.current = opening;
   const wanted = named.join(",");
+  const ahead = useContext(HeadStartContext);
   const [opened, setOpened] = useState<OpenedDesk | null>(null);
   useEffect(() => {
     const parts = newParts();
-    const hold = (leased: Renewed<Lease>, isNamed: boolean) => new HeldShape(parts, leased, isNamed);
-    const desk = new Desk({ leases: leaseApi, hold }, collectionId, () => latest.current);
+    const hold = (leased: Renewed<Lease>, isNamed: boolean) =>
+      new HeldShape(parts, leased, isNamed, ahead?.mesh);
+    const desk = new Desk({ leases: ahead?.leases ?? leaseApi, hold }, collectionId, () => latest.current);
     const ids = wanted === "" ? [] : wanted.split(",").map(Number);
     void desk.start(ids).then(() => sendLeftovers(parts, personId, openKeys(desk)));
     setOpened({ desk, parts });
@@ -52,7 +55,7 @@ export function useDesk(
       stopWaking();
       void desk.close();
     };
-  }, [collectionId, personId, wanted]);
+  }, [collectionId, personId, wanted, ahead]);
   useServiceEvents(
     collectionId,
     (event) => {

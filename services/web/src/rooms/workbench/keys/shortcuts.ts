@@ -125,7 +125,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   {
     keys: ["d"],
     shown: "D",
-    what: "Draft, predicted, refined, confirmed, unsure",
+    what: "Show draft, predicted, refined, …",
     group: "View",
     run: (act) => act.cycleShown(),
   },

@@ -57,11 +57,6 @@ function ViewGrid(props: ViewGridProps) {
     for (const held of shown) if (held !== null) desk.begin(held);
   });
 
-  // biome-ignore lint/correctness/useExhaustiveDependencies: as many views as there are now have another form each
-  useEffect(() => {
-    for (const each of live.current) each?.view.frame();
-  }, [views.count]);
-
   const shownIds = shown.map((held) => held?.shapeId).join();
   // biome-ignore lint/correctness/useExhaustiveDependencies: other views are to be linked once others are shown
   useEffect(() => {

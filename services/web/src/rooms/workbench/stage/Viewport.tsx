@@ -84,6 +84,13 @@ export function Viewport(props: ViewportProps) {
     };
   }, [stage, place, up, context.shelf]);
 
+  useEffect(() => {
+    if (element.current === null) return undefined;
+    const resized = new ResizeObserver(() => live.current?.view.fit());
+    resized.observe(element.current);
+    return () => resized.disconnect();
+  }, []);
+
   // biome-ignore lint/correctness/useExhaustiveDependencies: the scheme changes what the palette reads
   useLayoutEffect(() => {
     if (model !== null && element.current !== null) model.setPalette(paletteOf(element.current, parts));
