@@ -2,16 +2,22 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from io import BytesIO
+from itertools import product
 from time import monotonic
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import BrowserContext, Locator, Page, Position, expect
 from safetensors.numpy import load
 
 COLLECTION = 1
 PATIENCE_S = 30
+_STEPS = [0.14 + 0.09 * step for step in range(9)]
+_FROM_THE_MIDDLE = sorted(product(_STEPS, repeat=2), key=lambda at: (at[0] - 0.5) ** 2 + (at[1] - 0.5) ** 2)
+"""Places of a view as shares of its width and height, the middle first."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,27 @@ class Bench:
             mouse.move(*point, steps=8)
         if releases:
             mouse.up()
+
+    def places(self) -> Iterator[tuple[str, tuple[float, float]]]:
+        """The parts that the view shows, each with a place where it is: what the tool that picks parts finds."""
+        parts = self.page.get_by_role("group", name="Parts")
+        paint = self.page.get_by_role("button", name="Paint", exact=True)
+        found: set[str] = set()
+        for place in _FROM_THE_MIDDLE:
+            self.page.keyboard.press("i")
+            self.click_at(*place)
+            if paint.get_attribute("aria-pressed") != "true":
+                continue  # beside the shape: the tool is still in hand
+            part = parts.locator("label:has(:checked)").evaluate("row => row.title.split('\\n')[0]")
+            if part not in found:
+                found.add(part)
+                yield part, place
+
+    def surface_share(self) -> float:
+        """How much of the view the shape covers, from 0 to 1: what is not as grey as the stage."""
+        picture = Image.open(BytesIO(self.view.screenshot())).convert("RGB")
+        pixels = np.asarray(picture, dtype=np.int64)
+        return float((np.abs(pixels - pixels[2, 2]).sum(axis=2) > 24).mean())
 
     def _position(self, across: float, down: float) -> Position:
         box = self.view.bounding_box()

@@ -1,14 +1,17 @@
 """The way of an annotator, from the address that `partwise up` shows to a model that has learnt from them."""
 
 import shutil
+from datetime import datetime
+from itertools import islice
+from typing import Any
 
 import pytest
 from playwright.sync_api import expect
 
+from partwise.labels.annotation_cost import annotation_cost
+from partwise.labels.stroke_json import stroke_from_document
 from partwise.workspace.workspace import open_workspace
 
-SEAT, BACK = (0.44, 0.42), (0.5, 0.2)
-"""Places on a chair that was just opened, as shares of the view."""
 START = 1
 """Strokes of a draft before its person does anything: the labels that it starts from."""
 TRAINING_MS = 240_000
@@ -51,15 +54,20 @@ def start_from(bench, choice: str) -> None:
     bench.page.get_by_role("menuitem", name=choice).click()
 
 
-def label_by_patches(bench) -> None:
-    """From nothing: a click on the seat, a drag over the back. The rest stays grey."""
+def two_places(bench) -> list[tuple[float, float]]:
+    """On the shape, on different parts."""
+    return [place for _, place in islice(bench.places(), 2)]
+
+
+def label_by_patches(bench, first, second) -> None:
+    """From nothing: a click at one place, a drag from the other. The rest stays grey."""
     with bench.page.expect_response("**/patches"):
         start_from(bench, "Patches")
     expect(bench.page.get_by_text("Cutting…")).to_be_hidden()
     bench.page.keyboard.press("1")
-    bench.click_at(*SEAT)
+    bench.click_at(*first)
     bench.page.keyboard.press("2")
-    bench.drag(BACK, (BACK[0] + 0.1, BACK[1]))
+    bench.drag(second, (second[0] + 0.02, second[1]))
     shown = bench.shown()
     assert shown["seat"] > 0
     assert shown["back"] > 0
@@ -89,11 +97,12 @@ def test_from_logging_in_to_another_model(chairs, serve, browse, bench_in) -> No
         expect(tile).to_have_attribute("data-state", "ready")
         assert tiles(table) == [shape for shape, _, _ in scores]
 
-        label_by_patches(bench)
+        first, second = two_places(bench)
+        label_by_patches(bench, first, second)
         refine_boundaries(bench)
         bench.page.keyboard.press("b")
         bench.page.keyboard.press("4")
-        bench.click_at(*SEAT)
+        bench.click_at(*first)
         painted = bench.shown()
         bench.page.get_by_role("button", name="Undo").click()
         assert bench.shown()["arm"] < painted["arm"]
@@ -207,16 +216,99 @@ def test_several_views_of_one_shape_and_of_several(bench) -> None:
     expect(bench.page.get_by_text("Room for another shape")).to_be_visible()
     bench.page.get_by_role("button", name="Take the next of the queue").click()
     expect(bench.page.get_by_text("Room for another shape")).to_be_hidden()
-    held = [lease for lease in bench.get("/leases")["items"] if not lease["is_prefetched"]]
-    assert len(held) == 2
-    for lease in held:
+    def in_hand() -> list[dict[str, Any]]:
+        return [lease for lease in bench.get("/leases")["items"] if not lease["is_prefetched"]]
+
+    bench.until(lambda: len(in_hand()) == 2)
+    for lease in in_hand():
         expect(bench.page.get_by_role("region", name=lease["source_key"])).to_be_visible()
+
+
+def test_a_view_shows_other_labels_and_how_unsure_the_model_is_beside_the_draft(bench) -> None:
+    draft_id, page = bench.draft()["id"], bench.page
+    page.keyboard.press("v")
+    second = page.get_by_role("region", name="View 2 of 2")
+    drafted = second.screenshot()
+    page.get_by_role("button", name="View 2 of 2 shows: Draft").click()
+    with page.expect_response("**/labels?segmentation=predicted"):
+        page.get_by_role("menuitemradio", name="Predicted labels").click()
+    shows = page.get_by_role("button", name="View 2 of 2 shows: Predicted")
+    expect(shows).to_be_visible()
+    second.focus()
+    page.keyboard.press("Space")
+    expect(page.get_by_text("This view is to look at.")).to_be_visible()
+    second.click()
+    assert len(bench.strokes(draft_id)) == START  # the draft is not drawn on through it
+
+    page.get_by_role("button", name="View 2 of 2 shows: Predicted").click()
+    page.get_by_role("menuitemradio", name="Confirmed labels").click()
+    expect(page.get_by_text("Nobody has confirmed labels of this shape yet.")).to_be_visible()
+    second.focus()
+    with page.expect_response("**/uncertainty"):
+        page.keyboard.press("u")
+    expect(page.get_by_text("unsure", exact=False).first).to_be_visible()
+    bench.until(lambda: second.screenshot() != drafted)
+    page.keyboard.press("u")
+    expect(page.get_by_role("button", name="View 2 of 2 shows: Draft")).to_be_visible()
+
+
+def test_the_edges_of_faces_are_shown_on_demand(bench) -> None:
+    bench.page.keyboard.press("g")
+    edges = bench.page.get_by_role("button", name="Edges of faces")
+    expect(edges).to_have_attribute("aria-pressed", "true")
+    with_edges = bench.view.screenshot()
+    edges.click()
+    bench.until(lambda: bench.view.screenshot() != with_edges)
+
+
+def test_time_and_clicks_are_shown_as_they_will_be_on_record(bench) -> None:
+    draft = bench.draft()
+    place = two_places(bench)[0]
+    for part in ("e", "2"):
+        bench.page.keyboard.press(part)
+        bench.click_at(*place)
+    strokes = [stroke_from_document(each) for each in bench.expect_recorded(draft["id"], START + 2)]
+    cost = annotation_cost(strokes, opened_at=datetime.fromisoformat(draft["created_at"]))
+    minutes, seconds = divmod(int(cost.active_s), 60)
+    expect(bench.page.get_by_text(f"{minutes}:{seconds:02} at work · {cost.clicks} clicks")).to_be_visible()
+
+
+def test_a_shape_that_an_operator_takes_away_is_told_before_the_next_heartbeat(log_in) -> None:
+    bench = log_in("whose shape is taken", expects_errors=True)  # Chromium logs that it is not renewed
+    bench.open()
+    draft_id, lease = bench.draft()["id"], bench.lease()
+    place = two_places(bench)[0]
+    bench.page.keyboard.press("e")
+    bench.click_at(*place)
+    bench.wait_saved()
+    operator = log_in("who takes shapes away", "operator")
+    assert operator.post(f"/leases/{lease['id']}/clear")["outcome"] == "cleared"
+
+    expect(bench.page.get_by_text("An operator took this shape back")).to_be_visible()
+    expect(bench.page.get_by_text("Nothing is lost")).to_be_visible()
+    assert lease["shape_id"] not in {
+        each["shape_id"] for each in bench.get("/leases")["items"]
+    }  # it does not take it back
+    bench.expect_recorded(draft_id, START + 1)
+
+    bench.page.get_by_role("button", name="Ask for it again").click()
+    expect(bench.page.get_by_text("An operator took this shape back")).to_be_hidden()
+    bench.page.keyboard.press("Control+z")
+    assert kinds(bench.expect_recorded(draft_id, START + 2)[START:]) == ["paint", "undo"]
+
+
+def test_a_shape_that_somebody_else_has_is_refused_by_its_name(bench, log_in) -> None:
+    lease = bench.lease()
+    other = log_in("who wants the same", expects_errors=True)
+    other.page.goto(f"{bench.origin}/c/1/work?shapes={lease['shape_id']}")
+    expect(other.page.get_by_text(f"{lease['source_key']} is with someone else now")).to_be_visible()
 
 
 def test_a_reload_returns_to_the_same_shape_and_stroke(bench) -> None:
     name, draft_id = bench.shape_name, bench.draft()["id"]
+    place = two_places(bench)[0]
     bench.page.keyboard.press("e")
-    bench.click_at(*SEAT)
+    bench.click_at(*place)
     bench.page.keyboard.press("Control+z")
     before = bench.shown()
     bench.page.reload()
