@@ -94,13 +94,13 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
         current_default_thread_limiter().total_tokens = settings.threads
         async with AsyncExitStack() as resources:
             workspace = resources.enter_context(open_workspace(settings.workspace))
-            limiter = FailureLimiter(settings.max_auth_failures, settings.auth_window_s, clock)
+            limiter = FailureLimiter(settings.share(settings.max_auth_failures), settings.auth_window_s, clock)
             pool = ToolPool(workspace.array_url, _pool_limits(settings))
             resources.callback(pool.close)
-            hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h))
+            recent = RecentlyGood(clock)
+            hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h), recent, clock)
             await resources.enter_async_context(hub.running())
             ops = Remembered[OpsOut](OPS_S, clock)
-            recent = RecentlyGood(clock)
             owner = draft_owners(workspace.catalog)
             app.state.service = Service(
                 settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, owner, clock

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections import deque
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from datetime import UTC, datetime, timedelta
 
@@ -12,6 +12,7 @@ from anyio.to_thread import run_sync
 from partwise.errors import PartwiseError
 from partwise.store.catalog import EventCatalog
 from partwise.store.records import Event
+from partwise_service.security.recent import RecentlyGood
 
 POLL_S = 1.0
 PAGE = 500
@@ -22,25 +23,33 @@ _log = logging.getLogger(__name__)
 
 
 class EventHub:
-    """One reader of events, however many streams there are: it asks the catalog while any of them is open.
+    """One reader of events for the whole process, however many streams there are.
 
     All of it happens on the event loop; only the catalog is read on threads.
 
     Parameters
     ----------
     keep : how old events get before they are forgotten. prune_every_s : how often that is looked after.
+    recent : hears of all events, and so of revocations by other processes. clock : its clock.
     """
 
-    def __init__(self, catalog: EventCatalog, keep: timedelta, prune_every_s: float = 600.0) -> None:
+    def __init__(
+        self,
+        catalog: EventCatalog,
+        keep: timedelta,
+        recent: RecentlyGood,
+        clock: Callable[[], float],
+        prune_every_s: float = 600.0,
+    ) -> None:
         self._catalog = catalog
         self._keep = keep
+        self._recently_good = recent
+        self._clock = clock
         self._prune_every_s = prune_every_s
         self._recent: deque[Event] = deque(maxlen=MAX_RECENT)
         self._floor = 0  # the id after which all events are in `_recent`
         self._newest = 0
-        self._n_streams = 0
         self._has_news = asyncio.Event()
-        self._wanted = asyncio.Event()
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator["EventHub"]:
@@ -54,18 +63,6 @@ class EventHub:
             for task in tasks:
                 with suppress(asyncio.CancelledError):
                     await task
-
-    @asynccontextmanager
-    async def listening(self) -> AsyncIterator[None]:
-        """For as long as a stream is open."""
-        self._n_streams += 1
-        self._wanted.set()
-        try:
-            yield
-        finally:
-            self._n_streams -= 1
-            if not self._n_streams:
-                self._wanted.clear()
 
     @property
     def newest(self) -> int:
@@ -85,7 +82,9 @@ class EventHub:
 
     async def read_on(self) -> int:
         """Takes in what is new; how many events that are."""
+        looked_at = self._clock()
         found = await run_sync(lambda: self._catalog.events(after=self._newest, limit=PAGE))
+        self._recently_good.hear(found, looked_at, is_all=len(found) < PAGE)
         for event in found:
             if len(self._recent) == MAX_RECENT:
                 self._floor = self._recent[0].id
@@ -97,16 +96,17 @@ class EventHub:
         return len(found)
 
     async def begin_now(self) -> None:
-        """Forgets what it knows and goes on from the newest event on record."""
+        """Goes on from the newest event on record."""
         self._newest = self._floor = (await run_sync(self._catalog.event_bounds)).newest
-        self._recent.clear()
 
     async def _poll(self) -> None:
+        has_begun = False
         while True:
-            await self._wanted.wait()
             try:
-                await self.begin_now()
-                while self._n_streams:
+                if not has_begun:
+                    await self.begin_now()
+                    has_begun = True
+                while True:
                     if await self.read_on() < PAGE:
                         await asyncio.sleep(POLL_S)
             except PartwiseError:  # the catalog is away for a moment: streams are silent until it is back

@@ -73,9 +73,8 @@ async def stream_events(
         async def read(last: int) -> Sequence[Event]:
             return [as_told(event, caller) for event in await listener.read(last)]
 
-        async with hub.listening():
-            async for piece in event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed):
-                yield piece
+        async for piece in event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed):
+            yield piece
 
     resumed = after if last_event_id is None else _event_id(last_event_id)
     return StreamingResponse(told(), media_type=EVENT_STREAM, headers={"X-Accel-Buffering": "no"})

@@ -6,12 +6,14 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from partwise.errors import StoreError
 from partwise.store.records import Event, EventBounds, EventKind, NewEvent, Role
 from partwise_service import event_hub
 from partwise_service.event_hub import PAGE, EventHub, Listener
 from partwise_service.event_stream import HEARTBEAT_TURNS, event_stream
 from partwise_service.routes.events import is_still_good
 from partwise_service.security.identity import Identity
+from partwise_service.security.recent import RecentlyGood
 from partwise_service.settings import ServiceSettings
 
 
@@ -142,7 +144,7 @@ class _CountingCatalog:
 
 
 def _hub(catalog: _CountingCatalog) -> EventHub:
-    return EventHub(catalog, timedelta(hours=1))
+    return EventHub(catalog, timedelta(hours=1), RecentlyGood(lambda: 0.0), lambda: 0.0)
 
 
 def _ids(events) -> list[int]:
@@ -222,16 +224,26 @@ def test_nothing_is_missed_when_the_hub_begins_after_a_stream() -> None:
     asyncio.run(listen())
 
 
-def test_the_catalog_is_left_alone_while_nobody_listens() -> None:
+def test_a_reader_goes_on_where_it_was_when_the_catalog_was_away(monkeypatch) -> None:
+    monkeypatch.setattr(event_hub, "POLL_S", 0.0)
     catalog = _CountingCatalog()
+    read = catalog.events
 
-    async def run() -> None:
-        async with _hub(catalog).running():
-            for _ in range(20):
-                await asyncio.sleep(0)
+    def away(**_given) -> list[Event]:
+        catalog.add()  # which must not be passed over
+        catalog.events = read
+        raise StoreError("the database is away")
 
-    asyncio.run(run())
-    assert catalog.n_reads == 0
+    async def run() -> list[int]:
+        async with _hub(catalog).running() as hub:
+            while not catalog.n_reads:
+                await asyncio.sleep(0.001)
+            catalog.events = away
+            while not hub.since(0):
+                await hub.news(60)
+            return _ids(hub.since(0))
+
+    assert asyncio.run(run()) == [1]
 
 
 def test_old_events_are_forgotten() -> None:
@@ -251,7 +263,7 @@ def test_who_waits_hears_of_news_at_once() -> None:
     catalog = _CountingCatalog()
 
     async def run() -> list[int]:
-        async with _hub(catalog).running() as hub, hub.listening():
+        async with _hub(catalog).running() as hub:
             listener = Listener(hub, catalog, None)
             await listener.read(0)
             catalog.add()

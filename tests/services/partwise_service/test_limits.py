@@ -6,11 +6,11 @@ from datetime import UTC, datetime
 
 import pytest
 
-from partwise.store.records import Token
+from partwise.store.records import REVOKED, Event, Token
 from partwise_service.app import UPLOAD_PATH
 from partwise_service.security.middleware import BodyLimitMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
-from partwise_service.security.recent import TRUST_S, RecentlyGood
+from partwise_service.security.recent import ASSURED_S, TRUST_S, RecentlyGood
 from partwise_service.settings import ServiceSettings
 
 LIMIT = 2_000
@@ -134,10 +134,35 @@ class TestRecentSecrets:
         now = [7.0]
         recent = RecentlyGood(lambda: now[0])
         recent.remember(b"a", good_token, now[0])
+        recent.hear([], now[0], is_all=True)
         assert recent.trusted(b"a") == good_token
         now[0] += TRUST_S
+        recent.hear([], now[0], is_all=True)
         assert recent.trusted(b"a") is None
         assert recent.holds(b"a")
+
+    @pytest.mark.parametrize("is_all", [True, False])
+    def test_nobody_is_trusted_without_word_of_revocations(self, good_token, is_all) -> None:
+        now = [7.0]
+        recent = RecentlyGood(lambda: now[0])
+        recent.remember(b"a", good_token, now[0])
+        assert recent.trusted(b"a") is None
+        recent.hear([], now[0], is_all=is_all)
+        assert (recent.trusted(b"a") is not None) == is_all
+        now[0] += ASSURED_S
+        assert recent.trusted(b"a") is None
+
+    def test_word_of_a_revocation_ends_all_trust(self, good_token) -> None:
+        now = [7.0]
+        recent = RecentlyGood(lambda: now[0])
+        for fingerprint in (b"a", b"b"):
+            recent.remember(fingerprint, good_token, now[0])
+        revoked = Event(1, datetime.now(UTC), REVOKED.kind, None, dict(REVOKED.payload))
+        recent.hear([revoked], now[0], is_all=True)
+        assert recent.trusted(b"a") is recent.trusted(b"b") is None
+        now[0] += 1
+        recent.remember(b"a", good_token, now[0])
+        assert recent.trusted(b"a") == good_token
 
     def test_a_revocation_ends_all_trust_also_in_what_was_being_looked_up(self, good_token) -> None:
         now = [7.0]
@@ -146,11 +171,13 @@ class TestRecentSecrets:
         now[0] += 1
         recent.distrust_all()
         recent.remember(b"b", good_token, 7.5)
+        recent.hear([], now[0], is_all=True)
         assert recent.trusted(b"a") is recent.trusted(b"b") is None
 
     def test_an_expired_token_is_not_trusted(self, good_token) -> None:
         recent = RecentlyGood(lambda: 7.0)
         recent.remember(b"a", replace(good_token, expires_at=datetime.now(UTC)), 7.0)
+        recent.hear([], 7.0, is_all=True)
         assert recent.trusted(b"a") is None
 
 

@@ -17,7 +17,7 @@ from partwise.store.records.confirmations import (
     NewConsensus,
 )
 from partwise.store.records.drafts import Draft, DraftOutcome, NewDraft, StoredStroke
-from partwise.store.records.events import Event, EventBounds, EventKind, NewEvent
+from partwise.store.records.events import REVOKED, Event, EventBounds, EventKind, NewEvent
 from partwise.store.records.figures import BlockTotal, LeaseCounts, ModelRound, PersonFigures
 from partwise.store.records.jobs import (
     BACKGROUND_KINDS,
@@ -85,6 +85,7 @@ __all__ = [
     "COALESCED_KINDS",
     "DEFAULT_RANKING",
     "MAX_HELD",
+    "REVOKED",
     "AcceptBatch",
     "Answer",
     "AuditEntry",

@@ -27,6 +27,10 @@ class NewEvent:
     payload: Mapping[str, Any] = field(default_factory=dict)
 
 
+REVOKED = NewEvent(EventKind.PEOPLE, None, {"what": "revoked"})
+"""A token has ended before its time. It does not say whose: everybody hears it, as do all that trust tokens."""
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """An event on record. Ids grow in the order in which events become visible, so none is missed by reading on."""
@@ -36,6 +40,10 @@ class Event:
     kind: EventKind
     collection_id: int | None
     payload: Mapping[str, Any]
+
+    @property
+    def is_revocation(self) -> bool:
+        return (self.kind, self.payload) == (REVOKED.kind, REVOKED.payload)
 
 
 @dataclass(frozen=True, slots=True)

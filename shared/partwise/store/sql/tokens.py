@@ -11,8 +11,9 @@ from sqlalchemy import Connection, Row, Select, bindparam, insert, or_, select, 
 
 from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
-from partwise.store.records import IssuedCode, IssuedToken, NewToken, Role, Token
+from partwise.store.records import REVOKED, IssuedCode, IssuedToken, NewToken, Role, Token
 from partwise.store.sql.collections import append_audit
+from partwise.store.sql.events import append_events
 from partwise.store.sql.leases import person_name
 
 SECRET_PREFIX = "pw_"  # noqa: S105 # what secrets begin with, so that they are recognised where they should not be
@@ -96,6 +97,7 @@ def revoke_token(connection: Connection, token_id: int, actor: str, now: datetim
     is_it = or_(t.token.c.id == token_id, t.token.c.parent_id == token_id)
     connection.execute(update(t.token).where(is_it, t.token.c.revoked_at.is_(None)).values(revoked_at=now))
     append_audit(connection, actor, "revoke token", f"token {token_id}", {"person": known.person_name}, now)
+    append_events(connection, [REVOKED], now)
     return replace(known, revoked_at=now)
 
 

@@ -61,6 +61,13 @@ class TokenConformance:
         ]
         assert issued.secret not in str(entries)
 
+    def test_whoever_trusts_tokens_hears_that_one_was_revoked(self, catalog: Catalog) -> None:
+        issued = _issued(catalog)
+        assert catalog.events(after=0) == []
+        for _ in range(2):
+            catalog.revoke_token(issued.token.id, "rita")
+        assert [event.is_revocation for event in catalog.events(after=0)] == [True]
+
     def test_a_token_must_make_sense(self, catalog: Catalog) -> None:
         ann = catalog.add_person("ann")
         with raises(ParameterError, "future"):
