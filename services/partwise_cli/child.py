@@ -8,17 +8,22 @@ import os
 import signal
 import sys
 
-from partwise_cli.main import main
-
 _PR_SET_PDEATHSIG = 1  # of Linux's prctl
 ORPHANED = 1
 
 
-def run(parent_id: int) -> None:
-    """The command of `sys.argv`; SIGTERM comes when the process `parent_id`, which started this one, has gone."""
+def end_with_parent(parent_id: int) -> None:
+    """From now on SIGTERM comes when the process `parent_id`, which started this one, has gone."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
     if os.getppid() != parent_id:  # gone before it was asked for
         sys.exit(ORPHANED)
+
+
+def run(parent_id: int) -> None:
+    """The command of `sys.argv`, as long as the process `parent_id` is there."""
+    from partwise_cli.main import main
+
+    end_with_parent(parent_id)
     main()
 
 

@@ -128,7 +128,12 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
 
 
 def _pool_limits(settings: ServiceSettings) -> PoolLimits:
-    return PoolLimits(settings.tool_processes, settings.max_queued_tools, settings.tool_shapes, settings.tool_timeout_s)
+    return PoolLimits(
+        settings.share(settings.tool_processes),
+        settings.max_queued_tools,
+        settings.tool_shapes,
+        settings.tool_timeout_s,
+    )
 
 
 def _operation_id(route: APIRoute) -> str:

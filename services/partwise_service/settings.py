@@ -28,6 +28,7 @@ class ServiceSettings(BaseModel):
     trusted_proxies : addresses whose X-Forwarded-For and -Proto are believed.
     session_h : hours after which a browser must log in again. login_code_s : seconds for which a login code is good.
     max_body_bytes, max_upload_bytes : of a request's body, and of one to a path that takes files.
+    processes : that serve on the one port. Each has its share of `max_auth_failures` and `tool_processes`, at least 1.
     max_auth_failures : that one address, or one token's beginning, may make in `auth_window_s` seconds.
     threads : handlers that run at once; each may hold a connection to the database.
     lease_s : seconds for which a claim or a heartbeat holds a shape.
@@ -48,6 +49,7 @@ class ServiceSettings(BaseModel):
     public_url: str | None = None
     cors_origins: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()
+    processes: int = Field(1, ge=1, le=64)
     session_h: float = Field(12.0, gt=0, le=24 * 31)
     login_code_s: float = Field(600.0, gt=0, le=3600)
     max_body_bytes: int = Field(4 * MEBIBYTE, ge=1024)
@@ -107,6 +109,10 @@ class ServiceSettings(BaseModel):
             raise ConfigError(
                 f"the service's {name} ({PREFIX}{name.upper()}) is wrong: {first['msg']}; see docs/service.md"
             ) from error
+
+    def share(self, limit: int) -> int:
+        """Of a limit of the whole service, what each of its processes may use."""
+        return max(1, limit // self.processes)
 
     @property
     def origin(self) -> str:

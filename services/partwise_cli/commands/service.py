@@ -1,7 +1,6 @@
 """Commands around the service: serve, token create, list and revoke, reviews list and accept."""
 
 import getpass
-import logging
 import os
 import socket
 from contextlib import suppress
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
 RoleName = Literal["annotator", "reviewer", "operator", "admin"]
 """As `Role`, which the command line does not load to start."""
 SERVE_TOKEN_TTL = timedelta(days=1)
-STOP_S = 5
 PAGE = 1000
 _UNITS = {"m": timedelta(minutes=1), "h": timedelta(hours=1), "d": timedelta(days=1)}
 
@@ -56,24 +54,14 @@ def serve(
     public_url: PublicUrlOption = None,
     person: LoginOption = None,
     login: Annotated[bool, typer.Option(help="Print an address that logs in.")] = True,
+    processes: Annotated[int | None, typer.Option(help="Processes that serve.", show_default="1")] = None,
 ) -> None:
     """Let people work in a browser.  [dim]partwise serve ws --port 8000[/dim]"""
-    import uvicorn
-
-    from partwise_service.app import create_app
+    from partwise_cli.serving import serve_on
     from partwise_service.settings import ServiceSettings
 
-    settings = ServiceSettings.of(os.environ, workspace=ws, host=host, port=port, public_url=public_url)
-    app = create_app(settings)
-    config = uvicorn.Config(
-        app,
-        log_config=None,
-        log_level=logging.WARNING,
-        access_log=False,
-        server_header=False,
-        proxy_headers=bool(settings.trusted_proxies),
-        forwarded_allow_ips=list(settings.trusted_proxies),
-        timeout_graceful_shutdown=STOP_S,
+    settings = ServiceSettings.of(
+        os.environ, workspace=ws, host=host, port=port, public_url=public_url, processes=processes
     )
     with _listening(settings) as listener:
         if login:
@@ -81,7 +69,7 @@ def serve(
             typer.echo(f"{settings.origin}/#code={code}")
             typer.echo(f"opens the page once, within {settings.login_code_s / 60:g} minutes; Ctrl-C ends the service")
         with suppress(KeyboardInterrupt):  # how it is meant to end
-            uvicorn.Server(config).run(sockets=[listener])
+            serve_on(settings, listener)
 
 
 def _listening(settings: "ServiceSettings") -> socket.socket:

@@ -1,16 +1,20 @@
 """serve, token, reviews."""
 
 import json
+import os
 import re
 import signal
 import socket
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import httpx
 import numpy as np
+import psutil
 import pytest
 
 from partwise.errors import ConfigError, NotFoundError
@@ -89,26 +93,74 @@ def test_a_port_that_is_taken_is_named(invoke, empty) -> None:
         assert workspace.catalog.tokens() == []
 
 
-def test_the_address_that_serve_shows_logs_one_in_and_ctrl_c_ends_it(empty) -> None:
+@contextmanager
+def _serving(workspace: Path, *options: str) -> Iterator[tuple[subprocess.Popen, str]]:
+    """A running `partwise serve`, and the first line that it prints; killed if the block leaves it running."""
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
-    command = [
-        str(Path(sys.executable).with_name("partwise")),
-        "serve",
-        str(empty),
-        "--port",
-        str(port),
-        "--person",
-        "ada",
-    ]
+    program = str(Path(sys.executable).with_name("partwise"))
+    command = [program, "serve", str(workspace), "--port", str(port), "--person", "ada", *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
-            origin, code = re.fullmatch(r"(http://\S+)/#code=(\S+)\n", process.stdout.readline()).groups()
-            transport = httpx.HTTPTransport(retries=20)  # the socket listens already; the application may be starting
-            with httpx.Client(base_url=f"{origin}/api/v1", transport=transport, timeout=60) as browser:
-                assert browser.post("/login", json={"code": code}).status_code == 200
-                me = browser.get("/me").json()
-            assert (me["name"], me["role"], me["is_session"]) == ("ada", "admin", True)
+            yield process, process.stdout.readline()
         finally:
-            process.send_signal(signal.SIGINT)
+            if process.poll() is None:
+                process.kill()
+
+
+@contextmanager
+def _logged_in(address: str) -> Iterator[httpx.Client]:
+    """A browser, logged in by the address that `serve` has printed."""
+    origin, code = re.fullmatch(r"(http://\S+)/#code=(\S+)\n", address).groups()
+    transport = httpx.HTTPTransport(retries=20)  # the socket listens already; the application may be starting
+    with httpx.Client(base_url=f"{origin}/api/v1", transport=transport, timeout=60) as browser:
+        assert browser.post("/login", json={"code": code}).status_code == 200
+        yield browser
+
+
+def test_the_address_that_serve_shows_logs_one_in_and_ctrl_c_ends_it(empty) -> None:
+    with _serving(empty) as (process, address):
+        with _logged_in(address) as browser:
+            me = browser.get("/me").json()
+        assert (me["name"], me["role"], me["is_session"]) == ("ada", "admin", True)
+        process.send_signal(signal.SIGINT)
         assert (process.wait(60), process.stderr.read()) == (0, "")
+
+
+def _served_by(process: subprocess.Popen) -> set[int]:
+    """Ids of the processes that serve."""
+    running = (each for each in psutil.Process(process.pid).children() if each.status() != psutil.STATUS_ZOMBIE)
+    return {each.pid for each in running if "spawn_main" in " ".join(each.cmdline())}
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_several_processes_let_one_in_and_end_together(empty, how) -> None:
+    with _serving(empty, "--processes", "2") as (process, address):
+        with _logged_in(address) as browser:
+            cookies = dict(browser.cookies)
+            for _ in range(8):  # each on a connection of its own, which either process takes
+                with httpx.Client(base_url=browser.base_url, cookies=cookies, timeout=60) as again:
+                    assert again.get("/me").json()["name"] == "ada"
+        serving = _served_by(process)
+        assert len(serving) == 2
+        process.send_signal(how)
+        assert (process.wait(60), process.stderr.read()) == (0, "")
+        assert not any(psutil.pid_exists(each) for each in serving)
+
+
+def test_a_process_that_is_killed_is_started_again(empty) -> None:
+    with _serving(empty, "--processes", "2") as (process, address), _logged_in(address):
+        killed = _served_by(process).pop()
+        os.kill(killed, signal.SIGKILL)
+        while killed in (serving := _served_by(process)) or len(serving) < 2:
+            psutil.wait_procs(psutil.Process(process.pid).children(), timeout=0.05)
+        process.terminate()
+        assert process.wait(60) == 0
+
+
+def test_processes_end_with_the_one_that_started_them(empty) -> None:
+    with _serving(empty, "--processes", "2") as (process, address), _logged_in(address):
+        serving = [psutil.Process(each) for each in _served_by(process)]
+        process.kill()
+        _, left = psutil.wait_procs(serving, timeout=60)
+    assert left == []
