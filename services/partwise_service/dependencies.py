@@ -25,42 +25,40 @@ _bearer = HTTPBearer(auto_error=False, description="A token that `partwise token
 _cookie = APIKeyCookie(name=SESSION_COOKIE, auto_error=False, description="The session that /login has begun.")
 
 
-# What waits for nothing is `async`: it needs no thread, and a thread costs more than all that these do.
+# What waits for nothing is `async`: it needs no thread, and a thread costs more than all that these do. None asks for
+# another where it can do without: each costs as much as all that it does, every time that it is asked for.
 
 
 async def service(request: Request) -> Service:
     """What is open while the application runs."""
+    return _open(request)
+
+
+async def workspace(request: Request) -> Workspace:
+    """The workspace that is served."""
+    return _open(request).workspace
+
+
+async def catalog(request: Request) -> Catalog:
+    """The workspace's catalog."""
+    return _open(request).workspace.catalog
+
+
+def _open(request: Request) -> Service:
     found: Service = request.app.state.service
     return found
 
 
 ServiceDep = Annotated[Service, Depends(service)]
-
-
-async def workspace(open_service: ServiceDep) -> Workspace:
-    """The workspace that is served."""
-    return open_service.workspace
-
-
 WorkspaceDep = Annotated[Workspace, Depends(workspace)]
-
-
-async def catalog(served: WorkspaceDep) -> Catalog:
-    """The workspace's catalog."""
-    return served.catalog
-
-
 CatalogDep = Annotated[Catalog, Depends(catalog)]
+Bearer = Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)]
+Cookie = Annotated[str | None, Security(_cookie)]
 
 
-async def current_identity(
-    request: Request,
-    open_service: ServiceDep,
-    bearer: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)],
-    cookie: Annotated[str | None, Security(_cookie)],
-) -> Identity:
+async def current_identity(request: Request, bearer: Bearer, cookie: Cookie) -> Identity:
     """Who calls, by token or by session. Problems: 401, 403 for a session from a foreign page, 429."""
-    address = client_address(request)
+    open_service, address = _open(request), client_address(request)
     if bearer is not None:
         return await _identity(open_service, Credential(bearer.credentials, is_session=False), address)
     if cookie is None:
@@ -105,7 +103,8 @@ def client_address(request: Request) -> str:
 def require(role: Role) -> Callable[[Identity], Awaitable[Identity]]:
     """A dependency that lets callers of at least this role pass."""
 
-    async def at_least(caller: Caller) -> Identity:
+    async def at_least(request: Request, bearer: Bearer, cookie: Cookie) -> Identity:
+        caller = await current_identity(request, bearer, cookie)
         require_role(caller, role)
         return caller
 
