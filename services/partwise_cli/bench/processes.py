@@ -44,6 +44,16 @@ def processes() -> list[Process]:
     return ours + [Process(pid, SENTINELS, found[pid][1] / ticks_per_s) for pid in watching]
 
 
+def core_s_of(root: int) -> float:
+    """Processor seconds so far of a process and all that descend from it; 0 where there is no /proc."""
+    found = {pid: (parent, ticks) for pid, parent, ticks in _all()}
+    ticks, open_ids = 0, {root} & found.keys()
+    while open_ids:
+        ticks += sum(found[pid][1] for pid in open_ids)
+        open_ids = {pid for pid, (parent, _) in found.items() if parent in open_ids}
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
 def core_s_by_role(before: list[Process], after: list[Process]) -> dict[str, float]:
     """Processor seconds between two looks; those of processes that ended between them are lost."""
     earlier = {process.pid: process.core_s for process in before}

@@ -335,13 +335,14 @@ def load(
     minutes: Annotated[float, typer.Option(help="For which they work; 0 for the table alone.", min=0)] = 3,
     pages: Annotated[int, typer.Option(help="Requests for each order and filter; 0 for the people alone.", min=0)] = 60,
     seed: Annotated[int, typer.Option(help="Of the rows and of what people do.", min=0)] = 0,
+    processes: Annotated[int, typer.Option(help="That serve.", min=1)] = 1,
     as_json: JsonOption = False,
 ) -> None:
     """The service under load.  [dim]partwise bench load --database postgres[/dim]"""
     from partwise_cli.bench.load import LoadRequest, run_load
     from partwise_cli.bench.load_report import print_load
 
-    request = LoadRequest(database, shapes, people, minutes, pages, seed)
+    request = LoadRequest(database, shapes, people, minutes, pages, seed, processes)
     with progress("load") as advance:
         report = run_load(request, lambda what, n_done, n_total: advance(n_done, n_total, what))
     if as_json:
