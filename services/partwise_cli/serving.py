@@ -32,7 +32,7 @@ def serve_on(settings: ServiceSettings, listener: socket.socket) -> None:
     """
     own_id = os.getpid() if settings.processes > 1 else None
     config = uvicorn.Config(
-        partial(_app, settings, own_id),  # type: ignore[arg-type] # a factory, which is what `factory` says
+        partial(_app, settings, own_id),
         factory=True,
         workers=settings.processes,
         log_config=None,

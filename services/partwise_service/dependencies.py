@@ -100,7 +100,7 @@ def client_address(request: Request) -> str:
     return request.client.host if request.client is not None else "unknown"
 
 
-def require(role: Role) -> Callable[[Identity], Awaitable[Identity]]:
+def require(role: Role) -> Callable[[Request, Bearer, Cookie], Awaitable[Identity]]:
     """A dependency that lets callers of at least this role pass."""
 
     async def at_least(request: Request, bearer: Bearer, cookie: Cookie) -> Identity:
