@@ -15,12 +15,17 @@ export interface Graphics {
 /** Throws NoWebGlError. */
 export function newGraphics(canvas: HTMLCanvasElement): Graphics {
   try {
-    const context = newContext(canvas);
-    const renderer = new WebGLRenderer({ canvas, context });
+    const isSoftware = isDrawnByProcessor();
+    const renderer = new WebGLRenderer({
+      canvas,
+      antialias: !isSoftware,
+      alpha: true,
+      powerPreference: "high-performance",
+    });
     renderer.autoClear = false;
     renderer.setClearAlpha(0);
     renderer.setScissorTest(true);
-    return { renderer, isSoftware: isDrawnByProcessor(context) };
+    return { renderer, isSoftware };
   } catch {
     throw new NoWebGlError(
       "This browser does not show 3D. Turn on hardware acceleration in its settings, or use another browser.",
@@ -28,18 +33,12 @@ export function newGraphics(canvas: HTMLCanvasElement): Graphics {
   }
 }
 
-/** Smooth edges, but not where the processor draws: they would cost several times as much. */
-function newContext(canvas: HTMLCanvasElement): WebGL2RenderingContext {
-  const wish = { alpha: true, powerPreference: "high-performance" } as const;
-  const context =
-    canvas.getContext("webgl2", { ...wish, antialias: true, failIfMajorPerformanceCaveat: true }) ??
-    canvas.getContext("webgl2", { ...wish, antialias: false });
-  if (context === null) throw new NoWebGlError("no WebGL 2");
-  return context;
-}
-
-function isDrawnByProcessor(gl: WebGL2RenderingContext): boolean {
+/** Asked of a context of its own, because smoothing is chosen when a context is made. */
+function isDrawnByProcessor(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (gl === null) throw new NoWebGlError("no WebGL 2");
   const names = gl.getExtension("WEBGL_debug_renderer_info");
   const name = String(gl.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
