@@ -6,22 +6,27 @@ import { SurfaceMesh } from "../geometry/surfaceMesh";
 import type { MeshMessage, MeshWish } from "./meshReader";
 import { preparedSurface, transferables } from "./surfacePreparation";
 
-const trees = import("./searchTree"); // it is much code, and what shows the surface needs none of it
+const code = import("./searchTree"); // it is much, and what shows the surface needs none of it
+let mesh: SurfaceMesh;
 
-self.onmessage = ({ data }: MessageEvent<MeshWish>) => {
-  read(data).catch((error: unknown) => {
+self.onmessage = ({ data }: MessageEvent<MeshWish | "tree">) => {
+  const task = data === "tree" ? tellTree() : tellSurface(data);
+  task.catch((error: unknown) => {
     const why = error instanceof Error ? error.message : String(error);
     tell({ kind: "failed", why, status: error instanceof Problem ? error.status : null });
   });
 };
 
-async function read({ meshHash, shapeId }: MeshWish): Promise<void> {
+async function tellSurface({ meshHash, shapeId }: MeshWish): Promise<void> {
   const file = await readArrays(`/meshes/${meshHash}?shape_id=${shapeId}`);
   const vertices = arrayOf(file, "vertices", Float32Array);
-  const mesh = new SurfaceMesh(vertices, arrayOf(file, "faces", Uint32Array), meshHash);
+  mesh = new SurfaceMesh(vertices, arrayOf(file, "faces", Uint32Array), meshHash);
   const surface = preparedSurface(mesh);
   tell({ kind: "surface", surface }, transferables(surface));
-  const { builtTree, buffersOf } = await trees;
+}
+
+async function tellTree(): Promise<void> {
+  const { builtTree, buffersOf } = await code;
   const tree = builtTree(mesh);
   tell({ kind: "tree", tree }, buffersOf(tree));
 }

@@ -17,7 +17,8 @@ export type MeshMessage =
 
 export interface ComingMesh {
   readonly surface: Promise<PreparedSurface>;
-  readonly tree: Promise<SerializedBVH>;
+  /** Has the tree built, which takes about as long as the surface took. To be called once the surface is there. */
+  tree(): Promise<SerializedBVH>;
 }
 
 const UNAUTHENTICATED = 401;
@@ -29,14 +30,19 @@ export function newMeshWorker(): Worker {
 
 /** A worker for each mesh: the next one is read while this one is, and nothing is left of it afterwards. */
 export function readMesh(wish: MeshWish, worker: Worker = newMeshWorker()): ComingMesh {
-  const coming = {
-    surface: message(worker, "surface").then(({ surface }) => surface),
-    tree: message(worker, "tree").then(({ tree }) => tree),
-  };
   const end = () => worker.terminate();
-  Promise.all([coming.surface, coming.tree]).then(end, end);
+  const surface = message(worker, "surface").then(({ surface }) => surface);
+  const tree = message(worker, "tree").then(({ tree }) => tree);
+  surface.catch(end);
+  tree.then(end, end);
   worker.postMessage(wish);
-  return coming;
+  return {
+    surface,
+    tree: () => {
+      worker.postMessage("tree");
+      return tree;
+    },
+  };
 }
 
 type Told<K extends MeshMessage["kind"]> = Extract<MeshMessage, { kind: K }>;

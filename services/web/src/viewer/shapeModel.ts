@@ -48,6 +48,9 @@ export class ShapeModel {
   /** Called whenever something must be drawn anew; the views that show the shape listen. */
   readonly changed = new Set<() => void>();
   #tree: MeshBVH | null = null;
+  /** Ends once drawing the shape was first asked for. */
+  readonly drawn: Promise<void>;
+  #tellDrawn: () => void = () => {};
   #since: number | null;
   readonly #geometry: BufferGeometry;
   readonly #texture: DataTexture;
@@ -63,6 +66,9 @@ export class ShapeModel {
     this.mesh = mesh;
     this.outline = surface.outline;
     this.#side = surface.isSolid ? FrontSide : DoubleSide;
+    this.drawn = new Promise((resolve) => {
+      this.#tellDrawn = resolve;
+    });
     this.#since = since ?? null;
     const height = Math.ceil(this.mesh.nFaces / STATES_WIDTH);
     this.#states = new FaceStates(this.mesh.graph, 4 * STATES_WIDTH * height, () => this.#upload());
@@ -161,6 +167,7 @@ export class ShapeModel {
 
   /** After the shape was drawn: the first time, says how long the person waited for it. */
   wasDrawn(): void {
+    this.#tellDrawn();
     if (this.#since === null) return;
     performance.measure("partwise:first-paint", { start: this.#since, end: performance.now() });
     this.#since = null;

@@ -5,6 +5,7 @@ import { type Lease, leaseApi } from "../../../drafts/leaseApi";
 import { LeaseKeeper, type Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
 import { type ComingMesh, type MeshWish, readMesh } from "../../../viewer/meshReader";
+import { onScreen } from "../../../viewer/onScreen";
 import { meshOf } from "../../../viewer/preparedMesh";
 import { readTree } from "../../../viewer/searchTree";
 import { ShapeModel } from "../../../viewer/shapeModel";
@@ -174,8 +175,12 @@ export class HeldShape {
   private surface(since: number): Pick<Loading, "model" | "pickable"> {
     const coming = this.coming();
     const model = coming.then(({ surface }) => surface).then((surface) => this.shown(surface, since));
-    const pickable = Promise.all([model, coming.then(({ tree }) => tree)]);
-    return { model, pickable: pickable.then(([shown, tree]) => shown.pickWith(readTree(tree, shown.mesh))) };
+    const pickable = model.then(async (shown) => {
+      await onScreen(shown.drawn); // finding faces can wait, seeing the shape cannot
+      const { tree } = await coming;
+      shown.pickWith(readTree(await tree(), shown.mesh));
+    });
+    return { model, pickable };
   }
 
   private async coming(): Promise<ComingMesh> {
