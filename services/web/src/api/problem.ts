@@ -14,7 +14,7 @@ export class Problem extends Error {
   override readonly name = "Problem";
 
   constructor(readonly document: ProblemDocument) {
-    super(document.detail);
+    super("fault_id" in document ? `${document.detail} (${document.fault_id})` : document.detail);
   }
 
   get status(): number {

@@ -11,6 +11,9 @@ export interface Claims {
   readonly refused: readonly RefusedClaim[];
 }
 
+/** After sleep, a connection that is long gone may look as if it were there. */
+const ANSWER_MS = 30_000;
+
 /** The service's time of an answer, by which leases run; this machine's where a proxy drops it. */
 function answeredAt(response: Response): number {
   const date = response.headers.get("date");
@@ -46,6 +49,7 @@ export const leaseApi = {
     const { data, response } = await api.POST("/api/v1/leases/{lease_id}/heartbeat", {
       params: { path: { lease_id: leaseId } },
       body: { is_prefetched: isPrefetched },
+      signal: AbortSignal.timeout(ANSWER_MS),
     });
     return { lease: data as Lease, at: answeredAt(response) };
   },

@@ -46,6 +46,7 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
   const open = state.step === "ready" ? state.open : null;
   const active = useRef<LiveView | null>(null);
   const [views, setViews] = useState(ONE_VIEW);
+  const [isSeen, setSeen] = useState(true);
   const [dialog, setDialog] = useState<Opened>(null);
   const patches = usePatches(open, settings.tool === "patches", settings.nPatches, settings.method);
   const refinement = useRefinement(open);
@@ -77,7 +78,7 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
     redo: () => open?.redo(),
     refineBoundaries: () => refinement.boundaries(settings.omega),
     refineWithModel: () => refinement.model(),
-    confirm: () => void confirming.confirm(),
+    confirm: () => isSeen && void confirming.confirm(),
     skip: () => setDialog("skip"),
     nextShape() {
       const { shapes } = desk.state.get();
@@ -111,6 +112,7 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
           onActive={(live) => {
             active.current = live;
           }}
+          onUnseen={() => setSeen(false)}
           onViews={changeViews}
           onRetry={(shape) =>
             void shape.retry({ partIds: parts.map((part) => part.id), start: settings.start })
@@ -121,6 +123,7 @@ export function Workbench({ desk, held, parts, shelf }: WorkbenchProps) {
         <ShapePanel
           {...{ desk, held, parts, shelf, refinement }}
           isConfirming={confirming.isBusy}
+          isSeen={isSeen}
           onConfirm={() => void confirming.confirm()}
           onSkip={() => setDialog("skip")}
         />

@@ -4,11 +4,11 @@ import { SHORTCUTS } from "./shortcuts";
 
 const GROUPS = ["Tools", "Parts", "Change", "Shapes", "View"] as const;
 const OF_A_VIEW: readonly (readonly [string, string])[] = [
-  ["Arrows", "Turn the shape in the focused view"],
+  ["Arrows", "Turn the shape"],
   ["Shift+arrows", "Move it"],
   ["+ −", "Nearer, farther"],
-  ["Right button", "Turn while a tool is in hand"],
-  ["Two fingers", "Move and zoom on a touch screen"],
+  ["Right button", "Turn, tool in hand"],
+  ["Two fingers", "Move and zoom"],
 ];
 
 /** Every key of the workbench, from the table that also runs them. */

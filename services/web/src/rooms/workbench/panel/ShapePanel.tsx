@@ -21,13 +21,15 @@ export interface ShapePanelProps {
   shelf: ToolShelf;
   refinement: Refinement;
   isConfirming: boolean;
+  /** Whether the shape can be seen: nobody confirms what they cannot see. */
+  isSeen: boolean;
   onConfirm: () => void;
   onSkip: () => void;
 }
 
 /** All about the shape in hand: what it is, its parts, and how to be done with it. */
 export function ShapePanel(props: ShapePanelProps) {
-  const { desk, held, parts, shelf, refinement, isConfirming, onConfirm, onSkip } = props;
+  const { desk, held, parts, shelf, refinement, isConfirming, isSeen, onConfirm, onSkip } = props;
   const { part } = useObservable(shelf.settings);
   const state = useObservable(held.state);
   const facts = useObservable(held.facts);
@@ -61,12 +63,12 @@ export function ShapePanel(props: ShapePanelProps) {
         />
       </div>
       <footer className={styles.footer}>
-        {open !== null && <EffortLine open={open} />}
+        <EffortLine open={open} />
         <Button onClick={onSkip}>Skip…</Button>
         <Button
           variant="primary"
           className={styles.confirm ?? ""}
-          disabled={!canEdit}
+          disabled={!canEdit || !isSeen}
           isBusy={isConfirming}
           aria-keyshortcuts="Enter"
           title="Confirm these labels and go on to the next shape (Enter)"

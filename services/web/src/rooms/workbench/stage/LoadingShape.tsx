@@ -21,7 +21,9 @@ export function LoadingShape(props: {
           title="This shape could not be opened"
           actions={
             <>
-              <Button onClick={onRetry}>Try again</Button>
+              <Button variant="primary" onClick={onRetry}>
+                Try again
+              </Button>
               <Button onClick={onGiveUp}>Give it back</Button>
             </>
           }

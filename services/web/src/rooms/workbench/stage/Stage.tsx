@@ -24,6 +24,7 @@ export interface StageProps {
   up: UpAxis;
   scheme: string;
   onActive: (live: LiveView | null) => void;
+  onUnseen: () => void;
   onViews: (some: Partial<Views>) => void;
   onRetry: (held: HeldShape) => void;
 }
@@ -35,7 +36,7 @@ export function Stage(props: StageProps) {
   const isByShape = views.content === "shapes" && views.count > 1;
   const shown = Array.from({ length: views.count }, (_, at) => (isByShape ? (shapes[at] ?? null) : current));
   return (
-    <StageArea count={views.count}>
+    <StageArea count={views.count} onUnseen={props.onUnseen}>
       {(stage) => <ViewGrid {...props} stage={stage} shown={shown} isByShape={isByShape} current={current} />}
     </StageArea>
   );

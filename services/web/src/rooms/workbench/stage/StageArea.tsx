@@ -1,11 +1,16 @@
 import { type ReactNode, useEffect, useRef, useState } from "react";
-import { Button, Notice } from "../../../components";
+import { Button, classes, Notice } from "../../../components";
 import { ShapeStage } from "../../../viewer/shapeStage";
 import styles from "./StageArea.module.css";
 import type { ViewCount } from "./views";
 
 /** The canvas behind all views, and the grid that they stand in. */
-export function StageArea(props: { count: ViewCount; children: (stage: ShapeStage) => ReactNode }) {
+export function StageArea(props: {
+  count: ViewCount;
+  /** There will be no picture, for want of what it takes to draw it. */
+  onUnseen: () => void;
+  children: (stage: ShapeStage) => ReactNode;
+}) {
   const host = useRef<HTMLDivElement>(null);
   const [stage, setStage] = useState<ShapeStage | null>(null);
   const [why, setWhy] = useState<string | null>(null);
@@ -31,14 +36,20 @@ export function StageArea(props: { count: ViewCount; children: (stage: ShapeStag
     } catch (error) {
       canvas.remove();
       setWhy(error instanceof Error ? error.message : String(error));
+      props.onUnseen();
       return undefined;
     }
   }, [attempt]);
 
   if (why !== null) {
     return (
-      <div className={styles.area}>
-        <Notice kind="error" isCentred title="Shapes cannot be shown">
+      <div className={classes(styles.area, styles.unseen)}>
+        <Notice
+          kind="error"
+          isCentred
+          title="Shapes cannot be shown"
+          actions={<Button onClick={() => window.location.reload()}>Load the page again</Button>}
+        >
           {why}
         </Notice>
       </div>

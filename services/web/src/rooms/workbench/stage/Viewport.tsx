@@ -128,7 +128,7 @@ export function Viewport(props: ViewportProps) {
           </Badge>
         </span>
       )}
-      <ShownMenu view={name} shown={shown} why={comparison.why} onChoose={props.onShow} />
+      {draft !== null && <ShownMenu view={name} shown={shown} why={comparison.why} onChoose={props.onShow} />}
       {/* beside the view, which takes every press on it for a gesture */}
       {state.step !== "ready" && (
         <LoadingShape state={state} onGiveUp={props.onGiveUp} onRetry={props.onRetry} />
