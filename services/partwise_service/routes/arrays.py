@@ -2,15 +2,11 @@
 
 from typing import Annotated
 
-import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
 from partwise.errors import NotFoundError
-from partwise.labels.palette import rgb
-from partwise.render.thumbnail import colour_thumbnail
 from partwise.store.meshes import mesh_arrays
 from partwise.workspace.choices import Segmentation
-from partwise.workspace.pictures import find_picture
 from partwise.workspace.shapes import load_mesh
 from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import (
@@ -19,13 +15,13 @@ from partwise_service.array_responses import (
     SAFETENSORS_RESPONSES,
     entity_tag,
     not_modified,
-    png_response,
     safetensors_response,
 )
-from partwise_service.dependencies import Caller, CatalogDep, ScopedShape, WorkspaceDep, visible_shape
+from partwise_service.dependencies import Caller, ScopedShape, WorkspaceDep, visible_shape
 from partwise_service.face_uncertainty import find_uncertainty
 from partwise_service.schemas.base import MAX_ROW_ID, Hash
-from partwise_service.shown_labels import ShownLabels, labels_of_revision, shown_labels
+from partwise_service.shown_labels import labels_of_revision, shown_labels
+from partwise_service.thumbnails import thumbnail_response
 
 router = APIRouter(route_class=AnswerRoute, tags=["arrays"])
 ShapeQuery = Annotated[int, Query(ge=1, le=MAX_ROW_ID, description="A shape that has or had the mesh.")]
@@ -82,23 +78,8 @@ def get_thumbnail(
     request: Request,
     shape: ScopedShape,
     workspace: WorkspaceDep,
-    catalog: CatalogDep,
     segmentation: Annotated[Segmentation | None, Query(description="Grey without one, or where there is none.")] = None,
 ) -> Response:
     """PNG of the shape in the colours of its labels, on a transparent background."""
-    picture = find_picture(workspace, shape)
     labels = None if segmentation is None else shown_labels(workspace, shape, segmentation)
-    if labels is not None and labels.mesh_hash != picture.mesh_hash:
-        labels = None
-    colours = {part.id: part.colour for part in catalog.parts(shape.collection_id).parts}
-    tag = entity_tag("thumbnail", picture.identity, labels and labels.identity, sorted(colours.items()))
-    held = not_modified(request, tag)
-    if held is not None:
-        return held
-    face_ids, shading = picture.read()
-    ids = _labels_or_none(labels, int(face_ids.max()) + 1)
-    return png_response(colour_thumbnail(face_ids, shading, ids, {k: rgb(v) for k, v in colours.items()}), tag)
-
-
-def _labels_or_none(labels: ShownLabels | None, n_faces: int) -> np.ndarray:
-    return np.zeros(max(n_faces, 1), dtype=np.uint16) if labels is None else labels.read()
+    return thumbnail_response(request, workspace, shape, labels)

@@ -11,8 +11,14 @@ from partwise.store.records import Answer, Consensus, Effort, Role
 from partwise.store.reviews import Review, ReviewReason
 from partwise.workspace.confirming import choose_answer
 from partwise_service.answering import AnswerRoute
-from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
-from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape
+from partwise_service.array_responses import (
+    PNG_RESPONSES,
+    SAFETENSORS_RESPONSES,
+    entity_tag,
+    not_modified,
+    safetensors_response,
+)
+from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape, WorkspaceDep
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.checks import (
     BlindCheckOut,
@@ -23,6 +29,8 @@ from partwise_service.schemas.checks import (
     IndependentLabels,
 )
 from partwise_service.schemas.shapes import EffortOut, RevisionOut
+from partwise_service.shown_labels import ShownLabels
+from partwise_service.thumbnails import thumbnail_response
 
 MAX_PAGE = 500
 MAX_DISAGREEMENTS = 100
@@ -96,6 +104,17 @@ def read_answer(
         return held
     labels = catalog.answer_labels(answer.id)
     return safetensors_response(request, {"labels": labels}, tag, metadata={"mesh_hash": answer.mesh_hash})
+
+
+@router.get("/shapes/{shape_id}/answers/{answer_id}/thumbnail", responses=PNG_RESPONSES, response_class=Response)
+def show_answer(
+    request: Request, _caller: Reviewer, shape: ScopedShape, workspace: WorkspaceDep, answer_id: RowId
+) -> Response:
+    """PNG of the shape in the colours of one person's labels, where a round of independent labels is complete."""
+    catalog = workspace.catalog
+    answer = _compared_answer(catalog, shape.id, answer_id)
+    labels = ShownLabels(answer.mesh_hash, f"answer {answer.id}", lambda: catalog.answer_labels(answer.id))
+    return thumbnail_response(request, workspace, shape, labels)
 
 
 @router.post("/shapes/{shape_id}/reviews/{review_id}/choose")

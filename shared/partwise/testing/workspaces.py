@@ -9,9 +9,10 @@ from jaxtyping import Float, UInt16
 from partwise.geometry.faces import face_areas
 from partwise.io.off import format_off
 from partwise.mesh import TriMesh
+from partwise.render.face_picture import face_id_image
 from partwise.selection.acquisition import mean_entropy, mean_entropy_by_area
 from partwise.store.array_store import BlockAddress
-from partwise.store.block_kinds import EVALUATION, FEATURES, MESH, N_BINS, N_LIGHT_FIELD, REFINEMENT, REMESH
+from partwise.store.block_kinds import EVALUATION, FEATURES, MESH, N_BINS, N_LIGHT_FIELD, PICTURE, REFINEMENT, REMESH
 from partwise.store.blocks import BlockKind
 from partwise.store.levels import remeshed_arrays
 from partwise.store.meshes import mesh_arrays
@@ -143,6 +144,14 @@ def publish_refinement(
     ]
     workspace.catalog.publish_block(_row(address, REFINEMENT), runs)
     return address.name
+
+
+def publish_picture(workspace: Workspace, shape_id: int, mesh: TriMesh, key: str = "k1") -> None:
+    """What stage `picture` leaves of a mesh."""
+    picture = face_id_image(mesh)
+    address = workspace.arrays.write_block(PICTURE, [{"face_ids": picture.face_ids, "shading": picture.shading}])
+    summary = {"mesh_hash": mesh.content_hash()}
+    workspace.catalog.publish_block(_row(address, PICTURE), [NewStageRun(shape_id, "picture", key, 0, summary=summary)])
 
 
 def _features(n_faces: int, rng: np.random.Generator) -> dict[str, np.ndarray]:

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from safetensors.numpy import load
 
-from partwise.render.face_picture import face_id_image
 from partwise.render.thumbnail import PICTURE_SIZE
-from partwise.store.block_kinds import EVALUATION, PICTURE
+from partwise.store.block_kinds import EVALUATION
 from partwise.store.records import NewBlock, NewRevision, NewStageRun, RevisionKind
 from partwise.testing.spheres import ball
-from partwise.testing.workspaces import publish_meshes
+from partwise.testing.workspaces import publish_meshes, publish_picture
 from partwise_service.array_responses import IMMUTABLE, REVALIDATE, SAFETENSORS
 
 
@@ -23,13 +22,8 @@ def mesh_path(mugs) -> str:
 @pytest.fixture
 def pictured(workspace, mugs) -> int:
     """a.off with its picture."""
-    shape_id, mesh = mugs.ids["a.off"], mugs.meshes["a.off"]
-    picture = face_id_image(mesh)
-    address = workspace.arrays.write_block(PICTURE, [{"face_ids": picture.face_ids, "shading": picture.shading}])
-    new = NewBlock(address.name, PICTURE.name, 1, address.n_bytes, address.checksum)
-    summary = {"mesh_hash": mesh.content_hash()}
-    workspace.catalog.publish_block(new, [NewStageRun(shape_id, "picture", "k1", 0, summary=summary)])
-    return shape_id
+    publish_picture(workspace, mugs.ids["a.off"], mugs.meshes["a.off"])
+    return mugs.ids["a.off"]
 
 
 def _confirm(workspace, mugs, key: str, part_id: int = 1) -> int:

@@ -10,6 +10,7 @@ from safetensors.numpy import load
 from partwise.labels.operations import Assign
 from partwise.labels.strokes import Stroke
 from partwise.store.records import NewClaim, NewRevision, RevisionKind, Role
+from partwise.testing.workspaces import publish_picture
 from partwise.workspace.confirming import begin_draft, confirm
 
 
@@ -119,6 +120,16 @@ def test_disagreements_are_listed_with_what_everyone_said(reviewer, collection, 
         for each in found["answers"]
     ]
     assert labels == [{1}, {2}]
+
+
+def test_everybodys_labels_have_a_picture(reviewer, annotator, collection, disputed, workspace, mugs) -> None:
+    publish_picture(workspace, disputed, mugs.meshes["a.off"])
+    (found,) = reviewer.get(f"{collection}/disagreements").json()["items"]
+    paths = [f"/shapes/{disputed}/answers/{each['id']}/thumbnail" for each in found["answers"]]
+    pictures = [reviewer.get(path) for path in paths]
+    assert [each.headers["content-type"] for each in pictures] == ["image/png"] * 2
+    assert pictures[0].content != pictures[1].content
+    assert annotator.get(paths[0]).status_code == 403
 
 
 def test_labels_of_answers_are_revalidated(reviewer, collection, disputed) -> None:

@@ -3,7 +3,7 @@ import { classes } from "../components";
 import { whole } from "../components/numbers";
 import { type Colouring, clusterColour, STATE_TOKENS } from "./colours";
 import styles from "./EmbeddingMap.module.css";
-import { clusterSizes, type MapPoints, POINT_STATES, type PointState } from "./mapPoints";
+import { clusterSizes, type MapPoints, NO_CLUSTER, POINT_STATES, type PointState } from "./mapPoints";
 
 const WORDS: Readonly<Record<PointState, string>> = {
   new: "New",
@@ -24,6 +24,7 @@ export interface MapLegendProps {
 export function MapLegend({ points, colouring, cluster, onCluster }: MapLegendProps) {
   const sizes = useMemo(() => clusterSizes(points), [points]);
   const states = useMemo(() => stateSizes(points), [points]);
+  const nLoose = useMemo(() => points.cluster.filter((each) => each === NO_CLUSTER).length, [points]);
   const nFirst = useMemo(() => points.isFirst.reduce((sum, each) => sum + each, 0), [points]);
   return (
     <div className={styles.legend}>
@@ -56,6 +57,13 @@ export function MapLegend({ points, colouring, cluster, onCluster }: MapLegendPr
                 <span className={styles.number}>{whole(states[i] ?? 0)}</span>
               </li>
             ))}
+        {colouring === "cluster" && nLoose > 0 && (
+          <li className={styles.kind}>
+            <span className={styles.dot} style={{ background: `var(${STATE_TOKENS[0]})` }} />
+            In no cluster
+            <span className={styles.number}>{whole(nLoose)}</span>
+          </li>
+        )}
       </ul>
       {nFirst > 0 && (
         <p className={styles.first}>

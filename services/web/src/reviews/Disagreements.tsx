@@ -52,20 +52,20 @@ function DisagreementCard(props: { collectionId: number; disagreement: Disagreem
         {percent(disagreement.area_agreement)} of the area agrees, parts overlap by{" "}
         {percent(disagreement.part_iou)}, <Time at={disagreement.created_at} />
       </p>
-      <LabelsPicture
-        words="Labels as they are now"
-        address={`/api/v1/shapes/${shapeId}/thumbnail?segmentation=confirmed&v=${disagreement.revision_id}`}
-      />
       <ul className={styles.answers} aria-label="Whose labels">
         {disagreement.answers.map((answer) => (
           <li key={answer.id}>
-            <span className={styles.answerName}>
-              {answer.person_name}
-              <span className={styles.effort}>{effortWords(answer.effort)}</span>
-            </span>
-            {answer.is_medoid && <Badge>Closest to the others</Badge>}
+            <LabelsPicture
+              words={answer.person_name}
+              address={`/api/v1/shapes/${shapeId}/answers/${answer.id}/thumbnail`}
+            />
+            <p className={styles.reason}>{effortWords(answer.effort)}</p>
+            {answer.is_medoid && (
+              <Badge title="They are the shape’s as long as nobody decides.">Closest to the others</Badge>
+            )}
             <Button
               size="small"
+              aria-label={`Take the labels of ${answer.person_name}`}
               isBusy={
                 deciding.isPending &&
                 deciding.variables?.what === "choose" &&

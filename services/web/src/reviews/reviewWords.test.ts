@@ -42,8 +42,9 @@ describe("detailWords", () => {
 
 describe("effortWords", () => {
   it("is time and clicks, or nothing where nobody noted them", () => {
-    expect(effortWords({ active_s: 130, n_clicks: 1 })).toBe("2 min of work, 1 click");
+    expect(effortWords({ active_s: 130, n_clicks: 1 })).toBe("2 min 10 s of work, 1 click");
     expect(effortWords({ active_s: 0, n_clicks: 0 })).toBe("under 1 s of work, 0 clicks");
+    expect(effortWords({ active_s: 180.5, n_clicks: 2 })).toBe("3 min of work, 2 clicks");
     expect(effortWords(null)).toBeNull();
   });
 });

@@ -30,7 +30,14 @@ export function detailWords({ detail }: Review): string | null {
 /** "2 min 10 s of work, 14 clicks"; null where nobody noted it. */
 export function effortWords(effort: Effort | null): string | null {
   if (effort === null) return null;
-  return `${durationInWords(effort.active_s)} of work, ${count(effort.n_clicks, "click")}`;
+  return `${workInWords(effort.active_s)} of work, ${count(effort.n_clicks, "click")}`;
+}
+
+/** To the second up to an hour: what is compared are minutes. */
+function workInWords(seconds: number): string {
+  const rest = Math.floor(seconds % 60);
+  const words = durationInWords(seconds);
+  return seconds >= 60 && seconds < 3600 && rest > 0 ? `${words} ${rest} s` : words;
 }
 
 /** "2 of 9 wrong: 22.2% (6.3% to 54.7%)", or that nobody knows yet. */

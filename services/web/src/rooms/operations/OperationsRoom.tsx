@@ -36,12 +36,12 @@ export function OperationsRoom({ collectionId }: RoomProps) {
       <div className={styles.grid}>
         {hasFigures && <StagesPanel ops={ops.data} history={history} className={styles.whole} />}
         <JobsPanel collectionId={collectionId} className={styles.whole} />
+        {hasFigures && <WorkersPanel ops={ops.data} className={styles.whole} />}
         <FailuresPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
         {hasFigures && <QueuePanel ops={ops.data} history={history} />}
         <LeasesPanel collectionId={collectionId} />
         <PeoplePanel collectionId={collectionId} className={styles.whole} />
         <RoundsPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
-        {hasFigures && <WorkersPanel ops={ops.data} className={styles.whole} />}
         {hasFigures && <StoragePanel ops={ops.data} className={styles.whole} />}
       </div>
     </div>

@@ -30,16 +30,16 @@ const COLUMNS: readonly Column<Person>[] = [
   },
   {
     id: "pace",
-    header: "Labels an hour",
+    header: <span title="Labels an hour, without pauses">An hour</span>,
     isNumber: true,
     cell: ({ labels_per_h }) => (labels_per_h === null ? unknown(NO_TIMES) : decimal(labels_per_h)),
   },
   {
     id: "seconds",
-    header: "Seconds a shape",
+    header: <span title="Time for a shape, without pauses">A shape</span>,
     isNumber: true,
     cell: ({ seconds_per_shape }) =>
-      seconds_per_shape === null ? unknown(NO_TIMES) : decimal(seconds_per_shape),
+      seconds_per_shape === null ? unknown(NO_TIMES) : `${decimal(seconds_per_shape)} s`,
   },
   {
     id: "clicks",
