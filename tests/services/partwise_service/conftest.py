@@ -15,7 +15,13 @@ from fastapi.testclient import TestClient
 from partwise.mesh import TriMesh
 from partwise.store.records import Collection, NewToken, Role
 from partwise.testing.meshes import subdivided
-from partwise.testing.postgres import database_name, postgres_database, postgres_server
+from partwise.testing.postgres import (
+    ReusedDatabase,
+    database_name,
+    postgres_database,
+    postgres_server,
+    reused_database,
+)
 from partwise.testing.workspaces import (
     ingest,
     publish_evaluation,
@@ -113,12 +119,14 @@ def postgres() -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def postgres_template(tmp_path_factory: pytest.TempPathFactory, postgres: str) -> Iterator[tuple[Mugs, str]]:
-    """The same workspace with its catalog in PostgreSQL, and that database's name."""
+def postgres_template(tmp_path_factory: pytest.TempPathFactory, postgres: str) -> Iterator[tuple[Mugs, ReusedDatabase]]:
+    """The same workspace with its catalog in PostgreSQL, and a copy of that catalog for tests to use in turn."""
     path = tmp_path_factory.mktemp("service-postgres") / "ws"
     with postgres_database(postgres) as url:
         _write_config(path, url)
-        yield _made(path), database_name(url)
+        mugs = _made(path)
+        with reused_database(postgres, database_name(url)) as database:
+            yield mugs, database
 
 
 def _write_config(path: Path, database_url: str) -> None:
@@ -174,10 +182,10 @@ def mugs(database: str, request: pytest.FixtureRequest, tmp_path: Path) -> Itera
             shutil.copy(template.path / name, path / name)
         yield _beside(template, path)
         return
-    template, name = request.getfixturevalue("postgres_template")
-    with postgres_database(request.getfixturevalue("postgres"), name) as url:
-        _write_config(path, url)
-        yield _beside(template, path)
+    template, reused = request.getfixturevalue("postgres_template")
+    reused.restore()
+    _write_config(path, reused.url)
+    yield _beside(template, path)
 
 
 def _beside(template: Mugs, path: Path) -> Mugs:

@@ -9,7 +9,13 @@ import pytest
 from partwise.store.open import create_catalog, open_array_store, open_catalog
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.store.zarr_store import ZarrArrayStore
-from partwise.testing.postgres import database_name, postgres_database, postgres_server
+from partwise.testing.postgres import (
+    ReusedDatabase,
+    database_name,
+    postgres_database,
+    postgres_server,
+    reused_database,
+)
 
 pytest.register_assert_rewrite("partwise.testing.array_store", "partwise.testing.catalog")
 
@@ -51,9 +57,16 @@ def migrated_database(server: str) -> Iterator[str]:
         yield url
 
 
+@pytest.fixture(scope="session")
+def reused(server: str, migrated_database: str) -> Iterator[ReusedDatabase]:
+    with reused_database(server, database_name(migrated_database)) as database:
+        yield database
+
+
 @pytest.fixture
-def postgres_catalog(server: str, migrated_database: str) -> Iterator[SqlCatalog]:
-    with postgres_database(server, database_name(migrated_database)) as url, open_catalog(url) as catalog:
+def postgres_catalog(reused: ReusedDatabase) -> Iterator[SqlCatalog]:
+    reused.restore()
+    with open_catalog(reused.url) as catalog:
         yield catalog
 
 
