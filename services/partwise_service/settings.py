@@ -105,9 +105,10 @@ class ServiceSettings(BaseModel):
             return cls(**given)
         except ValidationError as error:
             first = error.errors()[0]
+            why = first["msg"].removeprefix("Value error, ")  # of a validator of ours, which says enough
             name = str(first["loc"][0]) if first["loc"] else "settings"
             raise ConfigError(
-                f"the service's {name} ({PREFIX}{name.upper()}) is wrong: {first['msg']}; see docs/service.md"
+                f"the service's {name} ({PREFIX}{name.upper()}) is wrong: {why}; see docs/service.md"
             ) from error
 
     def share(self, limit: int) -> int:

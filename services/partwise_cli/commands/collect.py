@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 MAX_REASONS = 20
 FailureReason = Literal["error", "deadline", "memory", "crash"]
 """As `FailureKind`, which the command line does not load to start."""
+StageName = Literal["mesh", "remesh", "describe", "picture", "evaluate", "refine"]
+"""As `STAGE_ORDER`, for the same reason."""
 Axis = Literal["x", "y", "z"]
 RemeshPolicy = Literal["auto", "never"]
 UP = "Which axis points up in pictures."
@@ -162,7 +164,7 @@ def preprocess(ws: WorkspaceArgument, collection: CollectionOption = None) -> No
 def retry(
     ws: WorkspaceArgument,
     collection: CollectionOption = None,
-    stage: Annotated[str | None, typer.Option(help="Only failures of this stage.", show_default=False)] = None,
+    stage: Annotated[StageName | None, typer.Option(help="Only failures of this stage.", show_default=False)] = None,
     reason: Annotated[FailureReason | None, typer.Option(help="Only what this ended.", show_default=False)] = None,
     text: Annotated[str, typer.Option(help="Only failures whose reason has this text.", show_default=False)] = "",
     lost: Annotated[

@@ -72,19 +72,16 @@ def work(
         collection_id = None if collection is None else workspace.catalog.get_collection(collection).id
         cluster = Cluster(interrupt_on_sigterm)
         worker = Worker(workspace, HANDLERS, cluster, kinds=chosen, collection_id=collection_id, on_job=_tell)
-        typer.echo(f"worker {worker.owner} waits for jobs; Ctrl-C ends it", err=True)
-        with Figures(workspace, cluster):
-            if once:
-                worker.run(once=True)
-                return
-            with suppress(KeyboardInterrupt):  # how it is meant to end
-                worker.run()
+        ends_well: tuple[type[BaseException], ...] = () if once else (KeyboardInterrupt,)  # how it is meant to end
+        with suppress(*ends_well), Figures(workspace, cluster):
+            typer.echo(f"worker {worker.owner} waits for jobs; Ctrl-C ends it", err=True)
+            worker.run(once=once)
 
 
 def _kinds(text: str) -> "list[JobKind]":
     from partwise.store.records import JobKind
 
-    names = [name.strip() for name in text.split(",") if name.strip()]
+    names = [name.strip() for name in text.split(",")]
     for name in names:
         if name not in list(JobKind):
             raise ParameterError(f"a kind of job must be one of {', '.join(JobKind)} but is {name!r}; correct --kinds")

@@ -61,7 +61,7 @@ def ingest_folder(
     NotFoundError : there is no such folder, or no mesh file in it.
     """
     if not folder.is_dir():
-        raise NotFoundError(f"ingest needs a folder but {folder} is not one; check the path")
+        raise NotFoundError(f"ingest needs a file or a folder but {folder} is neither; check the path")
     files = list(_outside(mesh_files(folder), workspace.array_url))
     intake = Intake(workspace, collection, on_progress, len(files))
     for path in files:

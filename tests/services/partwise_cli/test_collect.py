@@ -13,8 +13,9 @@ from partwise.mesh import TriMesh
 from partwise.store.records import FailureKind, NewFailure
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.relabel import RELABEL, MoveReport
+from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import open_workspace
-from partwise_cli.commands.collect import FailureReason
+from partwise_cli.commands.collect import FailureReason, StageName
 from partwise_workers import passes
 
 
@@ -223,6 +224,7 @@ def test_retry_forgets_what_is_asked_for(invoke, ingested: Path, options: tuple[
 
 def test_retry_knows_every_kind_of_failure() -> None:
     assert set(get_args(FailureReason)) == set(FailureKind)
+    assert get_args(StageName) == STAGE_ORDER
 
 
 # status

@@ -46,7 +46,11 @@ def test_other_kinds_and_collections_are_left(invoke, described: Path) -> None:
 
 @pytest.mark.parametrize(
     ("options", "error"),
-    [(("--kinds", "dance"), ParameterError), (("--collection", "vases"), NotFoundError)],
+    [
+        (("--kinds", "dance"), ParameterError),
+        (("--kinds", ""), ParameterError),
+        (("--collection", "vases"), NotFoundError),
+    ],
 )
 def test_what_is_not_there_is_refused(invoke, described: Path, options, error) -> None:
     assert isinstance(invoke("work", described, "--once", *options).exception, error)
