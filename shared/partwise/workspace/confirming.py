@@ -24,6 +24,7 @@ from partwise.store.records import (
     LabelRevision,
     Lease,
     LeasePurpose,
+    Mesh,
     NewBlindCheck,
     NewConfirmation,
     NewConsensus,
@@ -42,9 +43,13 @@ _TRIES = 5  # each fails only if another of the shape's labels came in while thi
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DraftWork:
-    """A draft with its mesh, the labels (m,) it starts from and its strokes: all that replaying it takes."""
+    """A draft with its mesh, the labels (m,) it starts from and its strokes: all that replaying it takes.
+
+    stored : where the mesh is.
+    """
 
     draft: Draft
+    stored: Mesh
     mesh: TriMesh
     base_labels: UInt16[np.ndarray, " m"]
     log: StrokeLog
@@ -77,14 +82,15 @@ def draft_work(workspace: Workspace, draft: Draft) -> DraftWork:
     ------
     NotFoundError, StoreError : the mesh or the labels it starts from cannot be read.
     """
-    mesh = load_mesh(workspace, workspace.catalog.mesh(draft.shape_id, draft.mesh_hash))
+    stored = workspace.catalog.mesh(draft.shape_id, draft.mesh_hash)
+    mesh = load_mesh(workspace, stored)
     if draft.base_revision is None:
         base = np.zeros(mesh.n_faces, dtype=np.uint16)
     else:
         base = workspace.catalog.labels(draft.base_revision)
     strokes = tuple(_strokes(workspace, draft))
     log = StrokeLog(draft.mesh_hash, mesh.n_faces, draft.base_revision, draft.base_sha256, strokes)
-    return DraftWork(draft, mesh, base, log)
+    return DraftWork(draft, stored, mesh, base, log)
 
 
 def confirm(
@@ -103,25 +109,24 @@ def confirm(
         closed, other labels than the person saw, or the shape is with someone else.
     LabelError : strokes that cannot be replayed, or a part that the schema has lost.
     """
-    confirmation = _confirmed(workspace, draft_id, person_id, n_strokes, expected_sha256)
+    draft = workspace.catalog.draft(draft_id)
+    if draft.outcome is DraftOutcome.DISCARDED:
+        raise ConflictError(f"a draft must be open to be confirmed but draft {draft_id} is discarded; open another")
+    confirmation = _confirmed(workspace, draft, person_id, n_strokes, expected_sha256)
     if confirmation.revision_id is not None:
-        collection_id = workspace.catalog.draft(draft_id).collection_id
-        settle_rechecks(workspace, collection_id, confirmation.shape_id)
+        settle_rechecks(workspace, draft.collection_id, confirmation.shape_id)
     return confirmation
 
 
 def _confirmed(
-    workspace: Workspace, draft_id: int, person_id: int, n_strokes: int, expected_sha256: str | None
+    workspace: Workspace, draft: Draft, person_id: int, n_strokes: int, expected_sha256: str | None
 ) -> Confirmation:
-    draft = workspace.catalog.draft(draft_id)
-    if draft.outcome is DraftOutcome.DISCARDED:
-        raise ConflictError(f"a draft must be open to be confirmed but draft {draft_id} is discarded; open another")
     work = draft_work(workspace, draft)
     schema = workspace.catalog.parts(draft.collection_id)
     folded = fold(work.log, work.mesh, work.base_labels, schema, expected_sha256)
-    keep_mesh(workspace.catalog, workspace.arrays, workspace.catalog.mesh(draft.shape_id, draft.mesh_hash))
+    keep_mesh(workspace.catalog, workspace.arrays, work.stored)
     cost = annotation_cost(work.log.strokes, opened_at=draft.created_at)
-    new = partial(NewConfirmation, draft_id, person_id, n_strokes, folded.labels, folded.schema_version, cost=cost)
+    new = partial(NewConfirmation, draft.id, person_id, n_strokes, folded.labels, folded.schema_version, cost=cost)
     if draft.purpose is LeasePurpose.BLIND:
         return workspace.catalog.confirm_draft(new(blind_check=_blind_check(workspace, work, folded)))
     if draft.purpose is LeasePurpose.LABEL or draft.outcome is not None:

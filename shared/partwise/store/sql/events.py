@@ -22,17 +22,11 @@ def append_events(connection: Connection, events: Sequence[NewEvent], now: datet
         return []
     if connection.dialect.name == "postgresql":
         connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": _LOCK})
-    return [_append(connection, event, now) for event in events]
-
-
-def _append(connection: Connection, event: NewEvent, now: datetime) -> Event:
-    values = {
-        "at": now,
-        "kind": event.kind.value,
-        "collection_id": event.collection_id,
-        "payload": dict(event.payload),
-    }
-    return _event(connection.execute(insert(t.event).values(values).returning(t.event)).one())
+    rows = [
+        {"at": now, "kind": event.kind.value, "collection_id": event.collection_id, "payload": dict(event.payload)}
+        for event in events
+    ]
+    return [_event(row) for row in connection.execute(_APPEND, rows)]
 
 
 def events(connection: Connection, after: int, collection_ids: Sequence[int] | None, limit: int) -> Sequence[Event]:
@@ -56,3 +50,7 @@ def prune_events(connection: Connection, before: datetime, limit: int) -> int:
 
 def _event(row: Row[Any]) -> Event:
     return Event(**{**row._mapping, "kind": EventKind(row.kind)})
+
+
+_APPEND = insert(t.event).returning(t.event, sort_by_parameter_order=True)
+"""However many there are, one statement, which gives them their ids in their order."""
