@@ -205,19 +205,20 @@ def _as_leased(
     tiles: Mapping[int, ShapeTile],
     order: ShapeOrder,
 ) -> Sequence[ListedShape]:
-    """The rows; those of shapes that the caller holds with the score that the lease tells.
+    """The rows; those of shapes that the caller holds with the score that the lease tells, and no other.
 
-    Of work that is not to be recognised that is another than the shape's own: two that differ would give it away.
+    Of work that is not to be recognised that is another than the shape's own: two that differ would give it away, and
+    so would one that nothing else at the head of the queue is like.
     """
     if not any(holder.person_id == caller.person_id for row in rows for holder in tiles[row.shape.id].holders):
         return rows
     leases = {lease.shape_id: lease for lease in catalog.leases_of(caller.person_id)}
     return [
-        replace(row, value=lease.score, model_version=lease.model_version)
-        if (lease := leases.get(row.shape.id)) is not None
-        and row.value is not None
-        and lease.score_name == order.score_name
-        else row
+        row
+        if (lease := leases.get(row.shape.id)) is None or row.value is None
+        else replace(row, value=lease.score, model_version=lease.model_version)
+        if lease.score_name == order.score_name
+        else replace(row, value=None, model_version=None)
         for row in rows
     ]
 

@@ -23,7 +23,8 @@ class HolderOut(Answer):
 class ShapeRow(Answer):
     """A row of the table: all that its tile shows. rank : its place in the order, from 0, where a jump asked for it.
 
-    score, model_version : the score that the list is ordered by, and which model's it is; null in other orders.
+    score, model_version : the score that the list is ordered by, and which model's it is; null in other orders. Of a
+    shape that the caller holds, what its lease tells of that score; null if it tells of another.
     revision_id, author_id, author_name : of its newest confirmed labels. has_confirmed : they are on its present mesh.
     predicted_version, refined_version : the model version of those labels; null where it has none.
     cluster : in the embedding. failed_stage : of its latest failure.

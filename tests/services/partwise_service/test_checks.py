@@ -183,9 +183,9 @@ def test_the_table_and_the_lease_tell_its_holder_the_same_score(
     (lease,) = annotator.post("/queue/claim", json={"collection_id": mugs.collection_id}).json()["items"]
     assert (lease["shape_id"], lease["score_name"]) == (known, "entropy")
 
-    def scores(caller) -> set[float]:
+    def scores(caller, name: str = "entropy") -> set[float | None]:
         """Of the shape, wherever the table tells it."""
-        order = {"order": "entropy"}
+        order = {"order": name}
         pages = [caller.get(f"{collection}/shapes{path}", params=order) for path in ("", "/ranked")]
         pages.append(caller.get(f"{collection}/shapes/rows", params={"id": known, **order}))
         return {row["score"] for page in pages for row in page.json()["items"] if row["id"] == known}
@@ -193,3 +193,5 @@ def test_the_table_and_the_lease_tell_its_holder_the_same_score(
     assert scores(annotator) == {lease["score"]}
     assert scores(reviewer) == {workspace.catalog.scores([known], "entropy")[known].value}
     assert scores(reviewer) != scores(annotator)
+    assert scores(annotator, "entropy_by_area") == {None}
+    assert scores(reviewer, "entropy_by_area") != {None}
