@@ -9,7 +9,7 @@ export interface IconButtonProps
   label: string;
   icon: ReactNode;
   /** Shown in the tooltip, and told to screen readers, such as "Ctrl+Z". */
-  shortcut?: string;
+  shortcut?: string | undefined;
   /** For buttons that stay down. */
   isPressed?: boolean;
   size?: "normal" | "small";

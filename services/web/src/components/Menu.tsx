@@ -39,7 +39,8 @@ export function Menu({
     if (!isOpen || !button.current || !menu.current) return; // its items are there only while it is open
     placeBeside(menu.current, button.current, alignment);
     const found = itemsOf(menu.current);
-    (found.find((item) => item.ariaChecked === "true") ?? found[0])?.focus();
+    const isOfChoices = found[0]?.role !== "menuitem"; // else what is checked further down is not what people came for
+    (found.find((item) => isOfChoices && item.ariaChecked === "true") ?? found[0])?.focus();
   }, [isOpen, alignment]);
 
   const onKeyDown = (event: KeyboardEvent) => {

@@ -6,7 +6,7 @@ export interface MenuItemProps {
   children: ReactNode;
   onSelect: () => void;
   icon?: ReactNode;
-  shortcut?: string;
+  shortcut?: string | undefined;
   isDisabled?: boolean;
   tone?: "normal" | "danger";
 }

@@ -13,6 +13,7 @@ import {
 import type { ReactNode } from "react";
 import { IconButton, Menu, MenuItem, Segmented } from "../../../components";
 import type { NamedView } from "../../../viewer/pose";
+import { keysFor } from "../keys/shortcuts";
 import styles from "./ViewControls.module.css";
 import type { ViewCount, Views } from "./views";
 
@@ -22,14 +23,14 @@ const COUNTS: readonly { value: `${ViewCount}`; label: string; icon: ReactNode }
   { value: "3", label: "Three views", icon: <PanelsLeftBottom /> },
   { value: "4", label: "Four views", icon: <Grid2x2 /> },
 ];
-const LOOKS: readonly [NamedView, string, string | undefined][] = [
-  ["threeQuarter", "From a corner", undefined],
-  ["front", "From the front", "⇧F"],
-  ["back", "From the back", "⇧B"],
-  ["left", "From the left", "⇧L"],
-  ["right", "From the right", "⇧R"],
-  ["top", "From the top", "⇧T"],
-  ["bottom", "From below", "⇧U"],
+const LOOKS: readonly [NamedView, string][] = [
+  ["threeQuarter", "From a corner"],
+  ["front", "From the front"],
+  ["back", "From the back"],
+  ["left", "From the left"],
+  ["right", "From the right"],
+  ["top", "From the top"],
+  ["bottom", "From below"],
 ];
 
 export interface ViewControlsProps {
@@ -53,7 +54,7 @@ export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
           />
           <IconButton
             label="Link cameras"
-            shortcut="L"
+            shortcut={keysFor("Link the cameras")}
             size="small"
             icon={<Link2 />}
             isPressed={views.isLinked}
@@ -63,7 +64,7 @@ export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
       )}
       <IconButton
         label="Edges of faces"
-        shortcut="G"
+        shortcut={keysFor("Edges of faces")}
         size="small"
         icon={<Grid3x3 />}
         isPressed={views.hasEdges}
@@ -87,19 +88,15 @@ export function ViewControls({ views, onChange, onFrame }: ViewControlsProps) {
           </>
         }
       >
-        {LOOKS.map(([look, words, keys]) => (
-          <MenuItem
-            key={look}
-            onSelect={() => onFrame(look)}
-            {...(keys === undefined ? {} : { shortcut: keys })}
-          >
+        {LOOKS.map(([look, words]) => (
+          <MenuItem key={look} onSelect={() => onFrame(look)} shortcut={keysFor(words)}>
             {words}
           </MenuItem>
         ))}
       </Menu>
       <IconButton
         label="Whole shape in view"
-        shortcut="F"
+        shortcut={keysFor("Whole shape in view")}
         size="small"
         icon={<Maximize />}
         onClick={() => onFrame()}

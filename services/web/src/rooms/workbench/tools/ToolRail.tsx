@@ -41,7 +41,7 @@ export function ToolRail({
           key={name}
           label={label}
           icon={icon}
-          shortcut={keysFor(keys) ?? ""}
+          shortcut={keysFor(keys)}
           isPressed={tool === name}
           onClick={() => shelf.change({ tool: name })}
         />
@@ -50,7 +50,7 @@ export function ToolRail({
       <IconButton
         label="Refine boundaries"
         icon={<Spline />}
-        shortcut={keysFor("Refine boundaries") ?? ""}
+        shortcut={keysFor("Refine boundaries")}
         disabled={!canEdit}
         onClick={onRefine}
       />
@@ -58,14 +58,14 @@ export function ToolRail({
       <IconButton
         label="Undo"
         icon={<Undo2 />}
-        shortcut="Ctrl+Z"
+        shortcut={keysFor("Undo")}
         disabled={!canEdit || !open?.editor.canUndo}
         onClick={() => open?.undo()}
       />
       <IconButton
         label="Redo"
         icon={<Redo2 />}
-        shortcut="Ctrl+Shift+Z"
+        shortcut={keysFor("Redo")}
         disabled={!canEdit || !open?.editor.canRedo}
         onClick={() => open?.redo()}
       />
