@@ -1,7 +1,7 @@
 import { useInfiniteQuery } from "@tanstack/react-query";
 import { Link } from "wouter";
 import { roomAddress } from "../app/rooms";
-import { Badge, Button, Notice, Time, useToast } from "../components";
+import { Badge, Button, Notice, Time } from "../components";
 import { percent } from "../components/numbers";
 import { LoadMore } from "../rooms/operations/LoadMore";
 import { Asked } from "./Asked";
@@ -41,7 +41,6 @@ export function Disagreements({ collectionId }: { collectionId: number }) {
 function DisagreementCard(props: { collectionId: number; disagreement: Disagreement }) {
   const { collectionId, disagreement } = props;
   const { shape_id: shapeId, review_id: reviewId } = disagreement;
-  const showToast = useToast();
   const deciding = useDecision(collectionId);
   return (
     <article className={styles.card} aria-label={disagreement.source_key}>
@@ -72,16 +71,13 @@ function DisagreementCard(props: { collectionId: number; disagreement: Disagreem
                 deciding.variables.answerId === answer.id
               }
               onClick={() =>
-                deciding.mutate(
-                  { what: "choose", shapeId, reviewId, answerId: answer.id },
-                  {
-                    onSuccess: () =>
-                      showToast({
-                        message: `Labels of ${answer.person_name} are the shape's now`,
-                        tone: "good",
-                      }),
-                  },
-                )
+                deciding.mutate({
+                  what: "choose",
+                  shapeId,
+                  reviewId,
+                  answerId: answer.id,
+                  personName: answer.person_name,
+                })
               }
             >
               Take these

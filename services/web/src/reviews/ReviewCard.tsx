@@ -2,7 +2,7 @@ import { Check, PenTool, Undo2 } from "lucide-react";
 import { useState } from "react";
 import { useLocation } from "wouter";
 import { roomAddress } from "../app/rooms";
-import { Button, Notice, TextArea, Time, useToast } from "../components";
+import { Button, Notice, TextArea, Time } from "../components";
 import { pictureOf } from "../rooms/table/rows/shapeRows";
 import { LabelsPicture } from "./LabelsPicture";
 import styles from "./Reviews.module.css";
@@ -15,13 +15,11 @@ const MAX_NOTE = 2_000;
 export function ReviewCard({ collectionId, review, row }: ReviewedShape & { readonly collectionId: number }) {
   const [note, setNote] = useState<string | null>(null);
   const [, navigate] = useLocation();
-  const showToast = useToast();
   const deciding = useDecision(collectionId);
   const { title, why } = REASON_WORDS[review.reason];
   const detail = detailWords(review);
   const effort = effortWords(review.effort);
   const about = { shapeId: row.id, reviewId: review.id };
-  const told = (message: string) => ({ onSuccess: () => showToast({ message, tone: "good" }) });
   return (
     <article className={styles.card} aria-label={row.source_key}>
       <h3 className={styles.name} title={row.source_key}>
@@ -72,7 +70,7 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
               variant="primary"
               icon={<Check />}
               isBusy={deciding.isPending}
-              onClick={() => deciding.mutate({ what: "accept", ...about }, told("Labels accepted"))}
+              onClick={() => deciding.mutate({ what: "accept", ...about })}
             >
               Accept
             </Button>
@@ -84,9 +82,7 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
               variant="primary"
               isBusy={deciding.isPending}
               disabled={note.trim() === ""}
-              onClick={() =>
-                deciding.mutate({ what: "reject", ...about, note: note.trim() }, told("Labels sent back"))
-              }
+              onClick={() => deciding.mutate({ what: "reject", ...about, note: note.trim() })}
             >
               Send back
             </Button>

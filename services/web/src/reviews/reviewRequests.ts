@@ -1,6 +1,7 @@
 /** What leads ask the service about labels that wait for a second look, and decide about them. */
 import { infiniteQueryOptions, queryOptions, useMutation, useQueryClient } from "@tanstack/react-query";
 import { api, body, type Schemas } from "../api/client";
+import { useToast } from "../components";
 
 export type Review = Schemas["OpenReviewOut"];
 export type Effort = Schemas["EffortOut"];
@@ -110,6 +111,7 @@ export type Decision =
       readonly shapeId: number;
       readonly reviewId: number;
       readonly answerId: number;
+      readonly personName: string;
     };
 
 function decide(decision: Decision): Promise<unknown> {
@@ -129,10 +131,18 @@ function decide(decision: Decision): Promise<unknown> {
   });
 }
 
+function doneInWords(decision: Decision): string {
+  if (decision.what === "choose") return `Labels of ${decision.personName} are the shape’s now`;
+  return decision.what === "accept" ? "Labels accepted" : "Labels sent back";
+}
+
+/** Decides, and says so: here, as what was decided about leaves the page, and what shows it with it. */
 export function useDecision(collectionId: number) {
   const client = useQueryClient();
+  const showToast = useToast();
   return useMutation({
     mutationFn: decide,
+    onSuccess: (_answer, decision) => showToast({ message: doneInWords(decision), tone: "good" }),
     // Also where it was refused: somebody else may have decided meanwhile.
     onSettled: () => client.invalidateQueries({ queryKey: ["reviews", collectionId] }),
   });

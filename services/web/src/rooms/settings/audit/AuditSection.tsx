@@ -52,7 +52,11 @@ export function AuditSection() {
 
 function Detail({ detail }: { detail: Entry["detail"] }) {
   const words = Object.entries(detail)
-    .map(([name, value]) => `${name} ${typeof value === "string" ? value : JSON.stringify(value)}`)
+    .filter(([, value]) => value !== null)
+    .map(
+      ([name, value]) =>
+        `${name.replaceAll("_", " ")} ${typeof value === "string" ? value : JSON.stringify(value)}`,
+    )
     .join(", ");
   return <span title={words}>{words}</span>;
 }

@@ -78,7 +78,7 @@ export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarPr
             {isReviewer && button("sendBack", <Undo2 />, "Send back…")}
             {isReviewer && <PutFirstButton collectionId={collectionId} shapeIds={[...chosen.keys()]} />}
             {isOperator && button("assign", <UserRoundPlus />, "Assign…")}
-            {isOperator && button("putBack", <ListRestart />, "Put back in queue…")}
+            {isOperator && button("putBack", <ListRestart />, "Put back…")}
           </div>
           <IconButton
             size="small"
