@@ -6,6 +6,7 @@ const ANYWHERE: readonly (readonly [string, string])[] = [
   ["G then W", "Go to the workbench"],
   ["G then O", "Go to operations"],
   ["G then S", "Go to settings"],
+  ["/", "Search names, in the table"],
   ["?", "Keys of the room you are in"],
 ];
 
