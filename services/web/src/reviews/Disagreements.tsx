@@ -1,9 +1,9 @@
 import { useInfiniteQuery } from "@tanstack/react-query";
 import { Link } from "wouter";
-import { roomAddress } from "../app/rooms";
 import { Badge, Button, Notice, Time } from "../components";
 import { percent } from "../components/numbers";
 import { LoadMore } from "../rooms/operations/LoadMore";
+import { workAddress } from "../rooms/workbench/workAddress";
 import { Asked } from "./Asked";
 import { LabelsPicture } from "./LabelsPicture";
 import styles from "./Reviews.module.css";
@@ -45,7 +45,7 @@ function DisagreementCard(props: { collectionId: number; disagreement: Disagreem
   return (
     <article className={styles.card} aria-label={disagreement.source_key}>
       <h3 className={styles.name} title={disagreement.source_key}>
-        <Link href={`${roomAddress(collectionId, "work")}?shapes=${shapeId}`}>{disagreement.source_key}</Link>
+        <Link href={workAddress(collectionId, [shapeId])}>{disagreement.source_key}</Link>
       </h3>
       <p className={styles.reason}>
         {percent(disagreement.area_agreement)} of the area agrees, parts overlap by{" "}

@@ -1,9 +1,9 @@
 import { Check, PenTool, Undo2 } from "lucide-react";
 import { useState } from "react";
 import { useLocation } from "wouter";
-import { roomAddress } from "../app/rooms";
 import { Button, Notice, TextArea, Time } from "../components";
 import { pictureOf } from "../rooms/table/rows/shapeRows";
+import { workAddress } from "../rooms/workbench/workAddress";
 import { LabelsPicture } from "./LabelsPicture";
 import styles from "./Reviews.module.css";
 import { type ReviewedShape, useDecision } from "./reviewRequests";
@@ -57,7 +57,7 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
       <div className={styles.buttons}>
         <Button
           icon={<PenTool />}
-          onClick={() => navigate(`${roomAddress(collectionId, "work")}?shapes=${row.id}`)}
+          onClick={() => navigate(workAddress(collectionId, [row.id]))}
         >
           Open
         </Button>

@@ -3,8 +3,8 @@ import { useCallback, useEffect, useMemo, useState } from "react";
 import { useLocation } from "wouter";
 import { partsQuery } from "../../api/queries";
 import { RoomHeading } from "../../app/RoomHeading";
-import { roomAddress } from "../../app/rooms";
 import { Button } from "../../components";
+import { workAddress } from "../workbench/workAddress";
 import { MAX_OPEN } from "./actions/limits";
 import { SelectionBar } from "./actions/SelectionBar";
 import type { TileLook } from "./grid/ShapeTile";
@@ -117,7 +117,7 @@ function useOpen(collectionId: number): (rows: readonly ShapeRow[]) => void {
   return useCallback(
     (rows) => {
       const ids = rows.slice(0, MAX_OPEN).map((row) => row.id);
-      navigate(`${roomAddress(collectionId, "work")}?shapes=${ids.join(",")}`);
+      navigate(workAddress(collectionId, ids));
     },
     [collectionId, navigate],
   );
