@@ -8,7 +8,7 @@ export class NoWebGlError extends Error {
 
 export interface Graphics {
   readonly renderer: WebGLRenderer;
-  /** Drawn by the processor, without a graphics card: every pixel counts. */
+  /** Drawn by the processor, without a graphics card: every pixel counts. What was drawn stays, to be drawn on. */
   readonly isSoftware: boolean;
 }
 
@@ -19,6 +19,7 @@ export function newGraphics(canvas: HTMLCanvasElement): Graphics {
     const renderer = new WebGLRenderer({
       canvas,
       antialias: !isSoftware,
+      preserveDrawingBuffer: isSoftware,
       alpha: true,
       powerPreference: "high-performance",
     });

@@ -5,7 +5,6 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 
 export type UpAxis = "x" | "y" | "z" | "-x" | "-y" | "-z";
-export type Manner = "turntable" | "trackball";
 export type NamedView = "front" | "back" | "left" | "right" | "top" | "bottom" | "threeQuarter";
 
 export interface Pose {
@@ -50,18 +49,13 @@ export function levelOrientation(yaw: number, pitch: number): Quaternion {
   return turn.multiply(new Quaternion().setFromAxisAngle(RIGHT, -steep));
 }
 
-/** The pose turned by a gesture to the right and down, radians. A turntable keeps up up. */
-export function turned(pose: Pose, right: number, down: number, manner: Manner): Pose {
-  if (manner === "turntable") {
-    const towards = FRONT.clone().applyQuaternion(pose.orientation);
-    const aside = RIGHT.clone().applyQuaternion(pose.orientation); // level, also where towards is not
-    const yaw = Math.atan2(-aside.z, aside.x);
-    const pitch = Math.asin(Math.max(-1, Math.min(1, towards.y)));
-    return { ...pose, orientation: levelOrientation(yaw - right, pitch + down) };
-  }
-  const turn = new Quaternion().setFromAxisAngle(UP, -right);
-  turn.multiply(new Quaternion().setFromAxisAngle(RIGHT, -down));
-  return { ...pose, orientation: pose.orientation.clone().multiply(turn).normalize() };
+/** The pose turned by a gesture to the right and down, radians, as on a turntable: up stays up. */
+export function turned(pose: Pose, right: number, down: number): Pose {
+  const towards = FRONT.clone().applyQuaternion(pose.orientation);
+  const aside = RIGHT.clone().applyQuaternion(pose.orientation); // level, also where towards is not
+  const yaw = Math.atan2(-aside.z, aside.x);
+  const pitch = Math.asin(Math.max(-1, Math.min(1, towards.y)));
+  return { ...pose, orientation: levelOrientation(yaw - right, pitch + down) };
 }
 
 /** The pose moved by a gesture to the right and up, in heights of the view: what is under the pointer stays there. */

@@ -4,7 +4,7 @@ import { type PreparedSurface, preparedSurface } from "./surfacePreparation";
 
 export interface PreparedMesh {
   readonly mesh: SurfaceMesh;
-  readonly surface: Pick<PreparedSurface, "positions" | "outline" | "normals" | "isSolid">;
+  readonly surface: Pick<PreparedSurface, "positions" | "spheres" | "outline" | "normals" | "isSolid">;
 }
 
 /** The mesh of a surface that was prepared elsewhere; it keeps its measures and adjacency, too. */

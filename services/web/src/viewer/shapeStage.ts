@@ -22,12 +22,17 @@ export class ShapeStage {
   #frame = 0;
   #stillness: ReturnType<typeof setTimeout> | undefined;
   #inputAt: number | null = null;
+  /** Nothing of the picture is right any more. */
+  #isSpoilt = true;
 
   /** canvas : behind the elements of the views, at least as large as all of them. Throws NoWebGlError. */
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
     this.#graphics = newGraphics(canvas);
-    this.#resized = new ResizeObserver(() => this.#draw()); // at once: a resized canvas is blank
+    this.#resized = new ResizeObserver(() => {
+      this.#isSpoilt = true;
+      this.#draw(); // at once: a resized canvas is blank
+    });
     this.#resized.observe(canvas);
     canvas.addEventListener("webglcontextlost", this.#contextLost);
     canvas.addEventListener("webglcontextrestored", this.#contextRestored);
@@ -76,6 +81,7 @@ export class ShapeStage {
   readonly #contextLost = () => this.onContext?.("lost");
 
   readonly #contextRestored = () => {
+    this.#isSpoilt = true;
     this.invalidate();
     this.onContext?.("restored");
   };
@@ -112,11 +118,17 @@ export class ShapeStage {
     if (!isFit) {
       renderer.setPixelRatio(pixelsToOne);
       renderer.setSize(box.width, box.height, false);
+      this.#isSpoilt = true;
     }
-    renderer.setViewport(0, 0, box.width, box.height);
-    renderer.setScissor(0, 0, box.width, box.height);
-    renderer.clear();
-    for (const view of this.#views) view.draw(renderer, box);
+    // without a graphics card what was drawn stays: what did not change is left as it is
+    const isAnew = this.#isSpoilt || !this.#graphics.isSoftware;
+    this.#isSpoilt = false;
+    if (isAnew) {
+      renderer.setViewport(0, 0, box.width, box.height);
+      renderer.setScissor(0, 0, box.width, box.height);
+      renderer.clear();
+    }
+    for (const view of this.#views) view.draw(renderer, box, isAnew);
   }
 
   #follow(leader: ShapeView): void {
@@ -128,6 +140,7 @@ export class ShapeStage {
     this.#views.delete(view);
     this.#links = this.#links.filter((linked) => linked !== view);
     this.#resized.unobserve(view.element);
+    this.#isSpoilt = true;
     this.invalidate();
   }
 }

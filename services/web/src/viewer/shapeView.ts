@@ -1,11 +1,10 @@
 /** One viewport: a camera on a shape, moved by pointer and keys, and the gestures of the tool in hand. */
-import { Matrix4, PerspectiveCamera, type Quaternion, Ray, Vector3, type WebGLRenderer } from "three";
+import { Box3, Matrix4, PerspectiveCamera, type Quaternion, Ray, Vector3, type WebGLRenderer } from "three";
 import { NavigationKeys } from "./navigationKeys";
 import { PointerGestures } from "./pointerGestures";
 import {
   FIELD_OF_VIEW,
   framed,
-  type Manner,
   moved,
   type NamedView,
   namedOrientation,
@@ -16,10 +15,10 @@ import {
   zoomed,
 } from "./pose";
 import type { Hit, ShapeModel } from "./shapeModel";
+import { frustumOf, partAround } from "./viewPart";
 
 export interface ViewOptions {
   readonly up: UpAxis;
-  readonly manner?: Manner;
 }
 
 /** What a view tells its stage. */
@@ -47,7 +46,6 @@ export class ShapeView {
   readonly element: HTMLElement;
   /** `stroke`: pressing on the surface draws. `navigate`: every gesture moves the camera. */
   tool: "navigate" | "stroke" = "navigate";
-  manner: Manner;
   /** Least distance between hits of a drag, as a share of the diagonal: a quarter of the brush's radius, say. */
   strokeSpacing = 0;
   readonly #stage: StageOfView;
@@ -56,14 +54,20 @@ export class ShapeView {
   readonly #listeners = new Set<ViewListener>();
   readonly #gestures: PointerGestures;
   readonly #keys: NavigationKeys;
-  readonly #redraw = () => this.#stage.invalidate();
+  readonly #redraw = (where: Box3 | null) => {
+    if (where === null) this.#isAllStale = true;
+    else this.#stale.union(where);
+    this.#stage.invalidate();
+  };
+  /** What must be drawn anew: all, or what is in a box of the mesh's coordinates. */
+  #isAllStale = true;
+  readonly #stale = new Box3();
   #model: ShapeModel | null = null;
   #framed: Pose | null = null;
   #pose: Pose = { orientation: namedOrientation("threeQuarter"), offset: new Vector3(), distance: 2.4 };
 
-  constructor(element: HTMLElement, { up, manner = "turntable" }: ViewOptions, stage: StageOfView) {
+  constructor(element: HTMLElement, { up }: ViewOptions, stage: StageOfView) {
     this.element = element;
-    this.manner = manner;
     this.#stage = stage;
     this.#upright = uprightRotation(up);
     this.#gestures = new PointerGestures(this);
@@ -91,7 +95,7 @@ export class ShapeView {
   /** Takes a pose without leading others by it. */
   follow(pose: Pose): void {
     this.#pose = pose;
-    this.#stage.invalidate();
+    this.#redraw(null);
     this.tell((listener) => listener.cameraChange?.(pose));
   }
 
@@ -102,7 +106,7 @@ export class ShapeView {
     model?.changed.add(this.#redraw);
     this.#model = model;
     if (model !== null && !keepsPose) this.frame();
-    this.#stage.invalidate();
+    this.#redraw(null);
   }
 
   /** The whole shape closely in view, from where the camera looks now or as named. */
@@ -119,7 +123,7 @@ export class ShapeView {
   }
 
   turn(right: number, down: number): void {
-    this.pose = turned(this.#pose, right, down, this.manner);
+    this.pose = turned(this.#pose, right, down);
   }
 
   /** By heights of the view. */
@@ -166,17 +170,27 @@ export class ShapeView {
     for (const listener of this.#listeners) what(listener);
   }
 
-  /** Draws into this view's part of the canvas. canvas : its rectangle on the page. */
-  draw(renderer: WebGLRenderer, canvas: DOMRect): void {
+  /**
+   * Draws what changed into this view's part of the canvas, or all of it. canvas : its rectangle on the page. isAnew :
+   * nothing is drawn there.
+   */
+  draw(renderer: WebGLRenderer, canvas: DOMRect, isAnew: boolean): void {
     const box = this.element.getBoundingClientRect();
+    if (box.width < 1 || box.height < 1) return;
     const model = this.#model;
-    if (model === null || box.width < 1 || box.height < 1) return;
-    const bottom = canvas.bottom - box.bottom;
-    renderer.setViewport(box.left - canvas.left, bottom, box.width, box.height);
-    renderer.setScissor(box.left - canvas.left, bottom, box.width, box.height);
-    this.#aimCamera(model, box.width / box.height);
+    if (model !== null) this.#aimCamera(model, box.width / box.height);
+    const whole = { left: 0, bottom: 0, width: box.width, height: box.height };
+    const part = isAnew || this.#isAllStale ? whole : partAround(this.#stale, this.#camera, whole);
+    this.#isAllStale = false;
+    this.#stale.makeEmpty();
+    if (part === null) return;
+    const [left, bottom] = [box.left - canvas.left, canvas.bottom - box.bottom];
+    renderer.setViewport(left, bottom, box.width, box.height);
+    renderer.setScissor(left + part.left, bottom + part.bottom, part.width, part.height);
+    if (!isAnew) renderer.clear();
+    if (model === null) return;
     const up = new Vector3(0, 1, 0).applyQuaternion(this.#pose.orientation.clone().invert());
-    model.aim(up, renderer.getPixelRatio());
+    model.aim(up, renderer.getPixelRatio(), frustumOf(this.#camera, part, whole));
     renderer.render(model.scene, this.#camera);
     model.wasDrawn();
   }

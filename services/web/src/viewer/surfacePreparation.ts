@@ -4,6 +4,12 @@ import { buildFaceGraph, type FaceGraphArrays } from "../geometry/faceGraph";
 import { type FaceMeasures, measureFaces } from "../geometry/faceMeasures";
 import { isSolid } from "../geometry/solid";
 
+/** Faces to a chunk: those that are next to each other in the mesh's order mostly are on its surface, too. */
+export const CHUNK_FACES = 256;
+
+/** What rounding to float32 may take from a radius. */
+const WIDER = 1.000_01;
+
 export interface MeshArrays {
   readonly vertices: Float32Array;
   readonly faces: Uint32Array;
@@ -14,6 +20,8 @@ export interface PreparedSurface extends MeshArrays {
   readonly graph: FaceGraphArrays;
   /** (9m) The corners of each face, one after the other: a face has colours of its own. */
   readonly positions: Float32Array;
+  /** (4c) Spheres around the faces of each chunk, middle and radius: what is out of sight is not drawn. */
+  readonly spheres: Float32Array;
   /** (3k) The vertices that faces use, each once: what a view has to frame. */
   readonly outline: Float32Array;
   /** Shading normals, four int16 to a corner. */
@@ -26,12 +34,14 @@ export interface PreparedSurface extends MeshArrays {
 export function preparedSurface({ vertices, faces }: MeshArrays): PreparedSurface {
   const measures = measureFaces(vertices, faces);
   const graph = buildFaceGraph(faces, vertices.length / 3);
+  const positions = cornerPositions(vertices, faces);
   return {
     vertices,
     faces,
     measures,
     graph,
-    positions: cornerPositions(vertices, faces),
+    positions,
+    spheres: chunkSpheres(positions),
     outline: usedVertices(vertices, faces),
     normals: cornerNormals(vertices, faces, measures.crosses),
     isSolid: isSolid(vertices, faces, graph.opposite),
@@ -43,6 +53,7 @@ export function transferables({
   measures,
   graph,
   positions,
+  spheres,
   outline,
   normals,
 }: PreparedSurface): ArrayBuffer[] {
@@ -55,6 +66,7 @@ export function transferables({
     graph.fanStart,
     graph.fanFaces,
     positions,
+    spheres,
     outline,
     normals,
   ];
@@ -86,4 +98,26 @@ function usedVertices(vertices: Float32Array, faces: Uint32Array): Float32Array 
     end += 3;
   }
   return used.slice(0, end);
+}
+
+function chunkSpheres(positions: Float32Array): Float32Array {
+  const step = 9 * CHUNK_FACES;
+  const spheres = new Float32Array(4 * Math.ceil(positions.length / step));
+  for (let chunk = 0; chunk < spheres.length / 4; chunk += 1) {
+    spheres.set(sphereAround(positions.subarray(chunk * step, (chunk + 1) * step)), 4 * chunk);
+  }
+  return spheres;
+}
+
+/** About the middle of the points' box: middle and radius. */
+function sphereAround(points: Float32Array): [x: number, y: number, z: number, radius: number] {
+  const [low, high] = [new Float64Array(3).fill(Infinity), new Float64Array(3).fill(-Infinity)];
+  for (let at = 0; at < points.length; at += 1) {
+    const value = points[at] as number;
+    if (value < (low[at % 3] as number)) low[at % 3] = value;
+    if (value > (high[at % 3] as number)) high[at % 3] = value;
+  }
+  const middle = (axis: 0 | 1 | 2) => ((low[axis] as number) + (high[axis] as number)) / 2;
+  const half = (axis: 0 | 1 | 2) => ((high[axis] as number) - (low[axis] as number)) / 2;
+  return [middle(0), middle(1), middle(2), Math.hypot(half(0), half(1), half(2)) * WIDER];
 }
