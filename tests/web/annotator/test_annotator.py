@@ -216,6 +216,7 @@ def test_several_views_of_one_shape_and_of_several(bench) -> None:
     expect(bench.page.get_by_text("Room for another shape")).to_be_visible()
     bench.page.get_by_role("button", name="Take the next of the queue").click()
     expect(bench.page.get_by_text("Room for another shape")).to_be_hidden()
+
     def in_hand() -> list[dict[str, Any]]:
         return [lease for lease in bench.get("/leases")["items"] if not lease["is_prefetched"]]
 
@@ -302,6 +303,19 @@ def test_a_shape_that_somebody_else_has_is_refused_by_its_name(bench, log_in) ->
     other = log_in("who wants the same", expects_errors=True)
     other.page.goto(f"{bench.origin}/c/1/work?shapes={lease['shape_id']}")
     expect(other.page.get_by_text(f"{lease['source_key']} is with someone else now")).to_be_visible()
+
+
+def test_nobody_confirms_a_shape_that_cannot_be_shown(log_in) -> None:
+    bench = log_in("whose browser shows no shapes")
+    bench.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    bench.open()
+    lease = bench.lease()
+    expect(bench.page.get_by_text("Shapes cannot be shown")).to_be_visible()
+    expect(bench.page.get_by_role("button", name="Confirm and next")).to_be_disabled()
+    bench.page.keyboard.press("Enter")
+    bench.page.keyboard.press("s")  # keys are heard
+    expect(bench.page.get_by_role("dialog", name=f"Skip {lease['source_key']}")).to_be_visible()
+    assert lease["id"] in {held["id"] for held in bench.get("/leases")["items"]}
 
 
 def test_a_reload_returns_to_the_same_shape_and_stroke(bench) -> None:

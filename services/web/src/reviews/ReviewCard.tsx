@@ -55,10 +55,7 @@ export function ReviewCard({ collectionId, review, row }: ReviewedShape & { read
         </Notice>
       )}
       <div className={styles.buttons}>
-        <Button
-          icon={<PenTool />}
-          onClick={() => navigate(workAddress(collectionId, [row.id]))}
-        >
+        <Button icon={<PenTool />} onClick={() => navigate(workAddress(collectionId, [row.id]))}>
           Open
         </Button>
         {note === null ? (
