@@ -130,3 +130,12 @@ def test_a_run_against_a_service_is_sound(report, capsys) -> None:
     )
     print_load(report)
     assert "0 errors" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_several_processes_serve_the_people() -> None:
+    request = LoadRequest(n_shapes=N_SHAPES, n_people=N_PEOPLE, minutes=1e-6, pages=0, processes=2)
+    report = run_load(request, lambda *_: None)
+    assert report.is_sound
+    assert set(report.people.core_ms) == {"service", "people"}
+    assert all(ms > 0 for ms in report.people.core_ms.values())

@@ -1,11 +1,12 @@
 """Processor time by what a process is."""
 
+import os
 import subprocess
 import sys
 
 import pytest
 
-from partwise_cli.bench.processes import ACTORS, DRIVER, SENTINELS, Process, core_s_by_role, processes
+from partwise_cli.bench.processes import ACTORS, DRIVER, SENTINELS, Process, core_s_by_role, core_s_of, processes
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
 
@@ -43,3 +44,15 @@ def test_time_is_that_between_two_looks() -> None:
     before = [Process(1, DRIVER, 2.0), Process(2, ACTORS, 1.0), Process(3, ACTORS, 9.0)]
     after = [Process(1, DRIVER, 2.5), Process(2, ACTORS, 4.0), Process(4, ACTORS, 0.25)]
     assert core_s_by_role(before, after) == {DRIVER: 0.5, ACTORS: 3.25}
+
+
+def test_time_of_a_process_counts_those_that_it_started() -> None:
+    before = core_s_of(os.getpid())
+    burn = "import time\nwhile time.process_time() < 0.3: pass\nprint(flush=True)\ninput()"
+    with subprocess.Popen([sys.executable, "-c", burn], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+        child.stdout.readline()
+        spent_s, ours_s = core_s_of(child.pid), core_s_of(os.getpid())
+        child.communicate(b"\n")
+    assert spent_s >= 0.25  # in ticks of the clock
+    assert ours_s - before >= 0.25
+    assert core_s_of(child.pid) == 0.0
