@@ -3,7 +3,8 @@
  * it is still on its way.
  */
 import { collectionsQuery, meQuery, newQueryClient } from "./api/queries";
-import { isRoom, ROOM_ADDRESS, ROOM_CODE } from "./app/roomCode";
+import { ROOM_ADDRESS } from "./app/roomAddress";
+import { isRoom, ROOM_CODE } from "./app/roomCode";
 import { applyScheme, savedScheme } from "./app/scheme/scheme";
 import { takeOneTimeCode } from "./app/session/oneTimeCode";
 import { HeadStart } from "./rooms/workbench/desk/headStart";

@@ -4,7 +4,8 @@ import { Notice, Time } from "../components";
 import { NewCollection } from "../rooms/settings/collections/NewCollection";
 import type { Collection } from "./CollectionContext";
 import styles from "./CollectionPicker.module.css";
-import { ROOMS, roomAddress } from "./rooms";
+import { roomAddress } from "./roomAddress";
+import { ROOMS } from "./rooms";
 import { useHasRole, useMe } from "./session/MeContext";
 import { Shell } from "./shell/Shell";
 

@@ -4,8 +4,8 @@ import { collectionsQuery } from "../api/queries";
 import { Button, Notice } from "../components";
 import { CollectionPicker } from "./CollectionPicker";
 import { RoomPage } from "./RoomPage";
-import { ROOM_ADDRESS } from "./roomCode";
-import { ROOMS, roomAddress } from "./rooms";
+import { ROOM_ADDRESS, roomAddress } from "./roomAddress";
+import { ROOMS } from "./rooms";
 import { Opening } from "./shell/Opening";
 import { Shell } from "./shell/Shell";
 

@@ -1,7 +1,4 @@
-/** Where rooms are, and their code, which is loaded when they are entered. */
-
-/** A collection, a room of it, and what a room may add. */
-export const ROOM_ADDRESS = /^\/c\/(?<collectionId>\d+)(?:\/(?<room>[^/]+))?(?:\/.*)?$/;
+/** The rooms' code, which is loaded when they are entered. */
 
 /** By the room's place in addresses: /c/3/table. */
 export const ROOM_CODE = {

@@ -1,12 +1,9 @@
 /** The rooms, and who may enter. */
 import { ChartNoAxesCombined, LayoutGrid, type LucideIcon, PenTool, SlidersHorizontal } from "lucide-react";
 import { type ComponentType, lazy } from "react";
+import type { RoomProps } from "./roomAddress";
 import { ROOM_CODE } from "./roomCode";
 import type { Role } from "./session/session";
-
-export interface RoomProps {
-  collectionId: number;
-}
 
 export interface Room {
   /** Its place in addresses: /c/3/table. */
@@ -53,7 +50,3 @@ export const ROOMS: readonly [Room, ...Room[]] = [
     View: lazy(ROOM_CODE.settings),
   },
 ];
-
-export function roomAddress(collectionId: number, path: string): string {
-  return `/c/${collectionId}/${path}`;
-}

@@ -3,19 +3,8 @@ import { Problem } from "../api/problem";
 import { Button, Notice, Progress, Spinner } from "../components";
 import { EmbeddingMap } from "./EmbeddingMap";
 import styles from "./EmbeddingMap.module.css";
+import type { MapPanelProps } from "./mapPanelProps";
 import { mapProgressQuery, mapQuery } from "./mapPoints";
-
-export interface MapPanelProps {
-  readonly collectionId: number;
-  /** Ids of the shapes that are selected beside the map. */
-  readonly chosen: ReadonlySet<number>;
-  /** The cluster that the list is limited to. */
-  readonly cluster: number | null;
-  /** Whether the person may say what comes first in the queue. */
-  readonly mayOrder: boolean;
-  onChoose(shapeIds: readonly number[], isAdding: boolean): void;
-  onCluster(cluster: number | null): void;
-}
 
 /** The map of a collection, or why there is none. */
 export function MapPanel(props: MapPanelProps) {

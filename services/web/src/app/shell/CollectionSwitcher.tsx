@@ -4,7 +4,7 @@ import { useLocation } from "wouter";
 import { collectionsQuery } from "../../api/queries";
 import { Menu, MenuChoice, MenuHeading } from "../../components";
 import type { Collection } from "../CollectionContext";
-import { roomAddress } from "../rooms";
+import { roomAddress } from "../roomAddress";
 import styles from "./CollectionSwitcher.module.css";
 
 /** Which collection is shown, and the others; one stays in the same room. */

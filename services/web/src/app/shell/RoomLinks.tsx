@@ -1,5 +1,6 @@
 import { Link } from "wouter";
-import { ROOMS, roomAddress } from "../rooms";
+import { roomAddress } from "../roomAddress";
+import { ROOMS } from "../rooms";
 import { useMe } from "../session/MeContext";
 import { hasRole } from "../session/session";
 import styles from "./RoomLinks.module.css";

@@ -1,21 +1,13 @@
 import { useEffect } from "react";
 import { useLocation } from "wouter";
-import { ROOMS, roomAddress } from "../rooms";
+import { roomAddress } from "../roomAddress";
+import { ROOMS } from "../rooms";
 import { useMe } from "../session/MeContext";
 import { hasRole } from "../session/session";
+import { isTyping } from "./isTyping";
 
 const LEADER = "g";
 const PAUSE_MS = 1_200;
-
-/** Whether keys are text where the focus is. */
-export function isTyping(target: EventTarget | null): boolean {
-  return (
-    target instanceof Element &&
-    target.closest(
-      "input:not([type=range],[type=checkbox],[type=radio]), textarea, select, [contenteditable]",
-    ) !== null
-  );
-}
 
 /** G, then the first letter of a room, goes there. */
 export function useRoomKeys(collectionId: number | null): void {

@@ -1,5 +1,5 @@
 import { useEffect } from "react";
-import { isTyping } from "./useRoomKeys";
+import { isTyping } from "./isTyping";
 
 /** "?" asks for the sheet of keys, unless it is text or somebody else answers. */
 export function useSheetKey(isHere: boolean, onAsked: () => void): void {

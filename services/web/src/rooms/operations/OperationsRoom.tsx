@@ -1,5 +1,5 @@
 import { RoomHeading } from "../../app/RoomHeading";
-import type { RoomProps } from "../../app/rooms";
+import type { RoomProps } from "../../app/roomAddress";
 import { Button, Notice, Skeleton } from "../../components";
 import { FailuresPanel } from "./failures/FailuresPanel";
 import { JobsPanel } from "./jobs/JobsPanel";

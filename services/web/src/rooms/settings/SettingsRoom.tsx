@@ -1,6 +1,6 @@
 import { Link, useLocation } from "wouter";
 import { RoomHeading } from "../../app/RoomHeading";
-import { type RoomProps, roomAddress } from "../../app/rooms";
+import { type RoomProps, roomAddress } from "../../app/roomAddress";
 import { useMe } from "../../app/session/MeContext";
 import { NewCollection } from "./collections/NewCollection";
 import styles from "./SettingsRoom.module.css";

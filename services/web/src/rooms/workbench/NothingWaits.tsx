@@ -2,7 +2,7 @@ import { useState } from "react";
 import { Link } from "wouter";
 import { useCollection } from "../../app/CollectionContext";
 import { useServiceEvents } from "../../app/events/useServiceEvents";
-import { roomAddress } from "../../app/rooms";
+import { roomAddress } from "../../app/roomAddress";
 import { Button, Notice } from "../../components";
 
 /** The queue is empty for this person. Says so when something may have come in. */

@@ -3,7 +3,7 @@ import { useMemo, useState } from "react";
 import { useSearch } from "wouter";
 import { partsQuery } from "../../api/queries";
 import { RoomHeading } from "../../app/RoomHeading";
-import type { RoomProps } from "../../app/rooms";
+import type { RoomProps } from "../../app/roomAddress";
 import { useMe } from "../../app/session/MeContext";
 import { Button, Notice, Spinner } from "../../components";
 import { useObservable, useObservableOr } from "../../drafts/useObservable";

@@ -1,4 +1,4 @@
-import { roomAddress } from "../../app/rooms";
+import { roomAddress } from "../../app/roomAddress";
 
 /** Where these shapes are worked on; up to four at once. */
 export function workAddress(collectionId: number, shapeIds: readonly number[]): string {

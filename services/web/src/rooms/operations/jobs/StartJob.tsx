@@ -2,7 +2,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { ChevronDown } from "lucide-react";
 import { Link } from "wouter";
 import { api, body, type Schemas } from "../../../api/client";
-import { roomAddress } from "../../../app/rooms";
+import { roomAddress } from "../../../app/roomAddress";
 import { JOB_WORDS } from "../../../app/shell/jobWords";
 import { Menu, MenuItem, useToast } from "../../../components";
 import styles from "./StartJob.module.css";

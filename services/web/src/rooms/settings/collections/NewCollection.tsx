@@ -4,7 +4,7 @@ import { useState } from "react";
 import { useLocation } from "wouter";
 import { api, body } from "../../../api/client";
 import { collectionsQuery } from "../../../api/queries";
-import { roomAddress } from "../../../app/rooms";
+import { roomAddress } from "../../../app/roomAddress";
 import { Button, type ButtonVariant, FormDialog, Input, TextArea } from "../../../components";
 import { partNamesOf } from "./partNames";
 

@@ -1,5 +1,5 @@
 import { Link } from "wouter";
-import { roomAddress } from "../../../app/rooms";
+import { roomAddress } from "../../../app/roomAddress";
 import { useMe } from "../../../app/session/MeContext";
 import { Panel } from "../../../components";
 import type { SectionProps } from "../sections";

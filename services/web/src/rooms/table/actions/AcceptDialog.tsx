@@ -6,7 +6,7 @@ import { ActionDialog } from "./ActionDialog";
 import styles from "./Actions.module.css";
 import { acceptable, type ModelLabels, suggestedRechecks, versionsWords } from "./acceptance";
 import { accept } from "./actionRequests";
-import type { ShapeActionProps } from "./SelectionBar";
+import type { ShapeActionProps } from "./shapeAction";
 
 /** Makes a model's labels those of many shapes, and has a few of them labelled by people who are told nothing. */
 export function AcceptDialog({ collectionId, rows, teller, onClose }: ShapeActionProps) {

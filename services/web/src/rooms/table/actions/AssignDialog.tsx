@@ -5,7 +5,7 @@ import { count } from "../../../components/numbers";
 import { ActionDialog } from "./ActionDialog";
 import { assign } from "./actionRequests";
 import { PersonChoice } from "./PersonChoice";
-import type { ShapeActionProps } from "./SelectionBar";
+import type { ShapeActionProps } from "./shapeAction";
 
 /** Keeps shapes that wait for one person, or lets anybody have them again. */
 export function AssignDialog({ collectionId, rows, onClose }: ShapeActionProps) {

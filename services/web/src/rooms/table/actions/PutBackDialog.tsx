@@ -5,7 +5,7 @@ import { ActionDialog } from "./ActionDialog";
 import { putBack } from "./actionRequests";
 import { askForEach } from "./outcome";
 import { PersonChoice } from "./PersonChoice";
-import type { ShapeActionProps } from "./SelectionBar";
+import type { ShapeActionProps } from "./shapeAction";
 
 /** Puts shapes first in the queue for another round. */
 export function PutBackDialog({ rows, teller, onClose }: ShapeActionProps) {

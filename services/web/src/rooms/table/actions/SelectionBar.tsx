@@ -13,15 +13,7 @@ import { MAX_OPEN } from "./limits";
 import { PutBackDialog } from "./PutBackDialog";
 import { PutFirstButton } from "./PutFirstButton";
 import { SendBackDialog } from "./SendBackDialog";
-import { type OutcomeTeller, useOutcome } from "./useOutcome";
-
-/** What each dialog of an action gets. rows : the shapes that it is about, as they were when it was opened. */
-export interface ShapeActionProps {
-  readonly collectionId: number;
-  readonly rows: ReadonlyMap<number, ShapeRow>;
-  readonly teller: OutcomeTeller;
-  onClose(): void;
-}
+import { useOutcome } from "./useOutcome";
 
 const DIALOGS = {
   accept: AcceptDialog,

@@ -4,7 +4,7 @@ import { Checkbox, TextArea } from "../../../components";
 import { count } from "../../../components/numbers";
 import { ActionDialog } from "./ActionDialog";
 import { sendBack } from "./actionRequests";
-import type { ShapeActionProps } from "./SelectionBar";
+import type { ShapeActionProps } from "./shapeAction";
 
 const MAX_NOTE = 2_000;
 

@@ -1,5 +1,5 @@
 import { useEffect, useRef } from "react";
-import { isTyping } from "../../../app/shell/useRoomKeys";
+import { isTyping } from "../../../app/shell/isTyping";
 
 /** Ctrl+A anywhere in the room means its shapes: the page's text is not what anybody wants to choose here. */
 export function useSelectAllKey(chooseAll: () => void): void {

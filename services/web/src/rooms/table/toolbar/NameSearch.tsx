@@ -1,6 +1,6 @@
 import { Search, X } from "lucide-react";
 import { useEffect, useRef, useState } from "react";
-import { isTyping } from "../../../app/shell/useRoomKeys";
+import { isTyping } from "../../../app/shell/isTyping";
 import { classes, IconButton } from "../../../components";
 import { MAX_NAME, searchedName } from "../view/tableView";
 import styles from "./NameSearch.module.css";

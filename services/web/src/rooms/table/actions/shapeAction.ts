@@ -1,0 +1,10 @@
+import type { ShapeRow } from "../rows/shapeRows";
+import type { OutcomeTeller } from "./useOutcome";
+
+/** What each dialog of an action gets. rows : the shapes that it is about, as they were when it was opened. */
+export interface ShapeActionProps {
+  readonly collectionId: number;
+  readonly rows: ReadonlyMap<number, ShapeRow>;
+  readonly teller: OutcomeTeller;
+  onClose(): void;
+}
