@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from partwise.errors import StoreError
-from partwise.store.records import Event, EventBounds, EventKind, NewEvent, Role
+from partwise.store.records import REVOKED, Event, EventBounds, EventKind, NewEvent, Role
 from partwise_service import event_hub
 from partwise_service.event_hub import PAGE, EventHub, Listener
 from partwise_service.event_stream import HEARTBEAT_TURNS, event_stream
@@ -244,6 +244,23 @@ def test_a_reader_goes_on_where_it_was_when_the_catalog_was_away(monkeypatch) ->
             return _ids(hub.since(0))
 
     assert asyncio.run(run()) == [1]
+
+
+def test_the_reader_hears_of_revocations(annotator, workspace) -> None:
+    catalog, recent = _CountingCatalog(), RecentlyGood(lambda: 1.0)
+    token = workspace.catalog.authenticate(annotator.secret)
+
+    async def listen() -> None:
+        hub = EventHub(catalog, timedelta(hours=1), recent, lambda: 1.0)
+        await hub.begin_now()
+        recent.remember(b"a", token, 0.0)
+        await hub.read_on()
+        assert recent.trusted(b"a") == token
+        catalog.stored.append(Event(1, datetime(2026, 1, 1, tzinfo=UTC), REVOKED.kind, None, dict(REVOKED.payload)))
+        await hub.read_on()
+        assert recent.trusted(b"a") is None
+
+    asyncio.run(listen())
 
 
 def test_old_events_are_forgotten() -> None:
