@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from partwise.errors import PartwiseError
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise_service.problems import ProblemError, ProblemKind
 from partwise_service.tool_calls import ToolCall, Workbench
 

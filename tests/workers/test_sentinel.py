@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise_workers import sentinel
 from partwise_workers.last_words import (
     LastWords,

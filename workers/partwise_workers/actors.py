@@ -19,7 +19,7 @@ from partwise.config import StageLimits
 from partwise.errors import NotFoundError, PartwiseError, StageRefusedError, StoreError
 from partwise.store.array_store import ArrayStore, BlockAddress
 from partwise.store.blocks import BlockKind
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.ragged import ragged_quantities
 from partwise.store.records import FailureKind
 from partwise_workers.last_words import Progress, last_words_name, note_progress, progress_name

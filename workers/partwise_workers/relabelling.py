@@ -14,7 +14,7 @@ from ray.exceptions import RayError, RayTaskError
 
 from partwise.errors import PartwiseError, StoreError
 from partwise.remesh.moved_labels import MovedLabels
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.records import Collection, Mesh
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.relabel import (

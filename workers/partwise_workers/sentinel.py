@@ -170,7 +170,7 @@ def _kill(pid: int, death: int | None) -> None:
 
 def _tell(array_url: str, name: str, log: Log, is_over: bool) -> None:
     """Puts the last words into the array store; this takes a second, as the store's libraries are loaded first."""
-    from partwise.store.open import open_array_store
+    from partwise.store.open_arrays import open_array_store
     from partwise_workers.last_words import LastWords
 
     words = LastWords.of(log.tail, log.peak_bytes, is_over)

@@ -26,7 +26,7 @@ from partwise.mesh import TriMesh
 from partwise.segmentation.parameters import RefinementParameters
 from partwise.store.array_store import ArrayStore
 from partwise.store.blocks import BlockKind, Domain, Quantity
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.records import Collection, LabelRevision, Model, NewModel, ShapeState, StageRun
 from partwise.workspace.workspace import Workspace
 from partwise_workers.cluster import connected, cores

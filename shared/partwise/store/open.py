@@ -1,20 +1,16 @@
-"""Open the two stores from their URLs."""
+"""Open the catalog at a URL, or make one."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
-import fsspec
 from sqlalchemy import URL
-from zarr.storage import FsspecStore, LocalStore
 
-from partwise.errors import ConfigError, NotFoundError, StoreError
+from partwise.errors import NotFoundError, StoreError
+from partwise.store.clock import utc_now
 from partwise.store.engine import connect_engine, parsed_url
 from partwise.store.migrate import migrate, refuse_other_schema
-from partwise.store.objects import LocalObjects, RemoteObjects, storing
-from partwise.store.sql_catalog import SqlCatalog, utc_now
-from partwise.store.zarr_store import ZarrArrayStore
+from partwise.store.sql_catalog import SqlCatalog
 
 
 def open_catalog(url: str, clock: Callable[[], datetime] = utc_now) -> SqlCatalog:
@@ -62,51 +58,3 @@ def create_catalog(url: str, clock: Callable[[], datetime] = utc_now) -> SqlCata
 
 def _sqlite_file(url: URL) -> Path | None:
     return Path(url.database) if url.drivername == "sqlite" and url.database else None
-
-
-def open_array_store(
-    url: str, options: Mapping[str, Any] | None = None, clock: Callable[[], datetime] = utc_now
-) -> ZarrArrayStore:
-    """The array store at `url`: a folder's path, `file://…`, or what fsspec knows, such as `s3://bucket/prefix`.
-
-    A local folder is made if its parent is there. `options` go to fsspec; the store is asked once whether it answers.
-
-    Raises
-    ------
-    ConfigError : the URL's scheme is unknown.
-    StoreError : the store cannot be reached or made, or its driver is not installed.
-    """
-    protocol, _, rest = url.rpartition("://")
-    if protocol in ("", "file", "local"):
-        return _local_store(Path(rest), clock)
-    given = {**_driver_options(protocol), **(options or {})}
-    try:
-        file_system, root = fsspec.url_to_fs(url, **given)
-    except ValueError as error:
-        raise ConfigError(f"a store URL must be a folder or an fsspec URL but is {url!r}: {error}") from error
-    except ImportError as error:
-        raise StoreError(f"{protocol}:// needs a driver ({error}); install partwise[cloud]") from error
-    objects = RemoteObjects(file_system, root, url)
-    objects.folders("")
-    with storing(url, "its top folder"):
-        zarr_store = FsspecStore.from_url(url, storage_options=given, read_only=True)
-    return ZarrArrayStore(objects, zarr_store, url, clock)
-
-
-def _local_store(root: Path, clock: Callable[[], datetime]) -> ZarrArrayStore:
-    root = root.absolute()
-    try:
-        root.mkdir(exist_ok=True)
-    except OSError as error:
-        raise StoreError(f"an array store must be a folder in an existing one but {root} cannot be: {error}") from error
-    return ZarrArrayStore(LocalObjects(root), LocalStore(root, read_only=True), str(root), clock)
-
-
-def _driver_options(protocol: str) -> dict[str, Any]:
-    """Seconds and attempts after which a store counts as unreachable, the drivers' own being minutes; and no checksums
-    of the driver's, which S3-compatible stores give for the whole object when a part was asked for: blocks have theirs.
-    """
-    if protocol != "s3":
-        return {}
-    checksums = dict.fromkeys(("request_checksum_calculation", "response_checksum_validation"), "when_required")
-    return {"config_kwargs": {"connect_timeout": 10, "retries": {"max_attempts": 3}, **checksums}}

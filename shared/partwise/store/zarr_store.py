@@ -25,7 +25,7 @@ _CHECKSUM_BYTES = 4
 
 
 class ZarrArrayStore:
-    """Blocks through Zarr, plain objects beside them; get one from `partwise.store.open`. Threads may share it.
+    """Blocks through Zarr, plain objects beside them; get one from `partwise.store.open_arrays`. Threads may share it.
 
     `where` names the store in messages. See `ArrayStore` for what methods do.
     """

@@ -12,7 +12,8 @@ from partwise.errors import ConfigError, LabelError, StoreError
 from partwise.io.atomic import write_atomically
 from partwise.store.array_store import ArrayStore
 from partwise.store.catalog import Catalog
-from partwise.store.open import create_catalog, open_array_store, open_catalog
+from partwise.store.open import create_catalog, open_catalog
+from partwise.store.open_arrays import open_array_store
 from partwise.store.records import Collection
 
 INITIAL_CONFIG = """\

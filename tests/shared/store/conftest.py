@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from partwise.store.open import create_catalog, open_array_store, open_catalog
+from partwise.store.open import create_catalog, open_catalog
+from partwise.store.open_arrays import open_array_store
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.store.zarr_store import ZarrArrayStore
 from partwise.testing.postgres import (

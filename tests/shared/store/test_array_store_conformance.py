@@ -4,7 +4,7 @@ import uuid
 
 import pytest
 
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.zarr_store import ZarrArrayStore
 from partwise.testing.array_store import ArrayStoreConformance
 

@@ -18,7 +18,7 @@ import pytest
 
 from partwise.errors import NotFoundError, StoreError
 from partwise.store.block_kinds import REFINEMENT
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.zarr_store import ZarrArrayStore
 from partwise.testing.array_store import ArrayStoreConformance
 

@@ -13,7 +13,7 @@ from partwise.store import keys
 from partwise.store.block_kinds import FEATURES, MESH, N_LIGHT_FIELD
 from partwise.store.blocks import BlockKind, Domain, Quantity
 from partwise.store.objects import LocalObjects
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.zarr_store import ZarrArrayStore
 
 

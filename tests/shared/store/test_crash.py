@@ -11,7 +11,8 @@ import pytest
 
 from partwise.store.array_store import BlockAddress
 from partwise.store.block_kinds import REFINEMENT
-from partwise.store.open import open_array_store, open_catalog
+from partwise.store.open import open_catalog
+from partwise.store.open_arrays import open_array_store
 from partwise.store.records import NewBlock, NewStageRun
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.store.zarr_store import ZarrArrayStore

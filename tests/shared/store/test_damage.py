@@ -13,7 +13,7 @@ from partwise.errors import ConfigError, NotFoundError, StoreError
 from partwise.store import objects
 from partwise.store.array_store import BlockAddress
 from partwise.store.block_kinds import REFINEMENT
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.store.zarr_store import ZarrArrayStore
 
 _LABELS = np.random.default_rng(5).integers(0, 9, 20_000).astype(np.uint16)

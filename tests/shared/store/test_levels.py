@@ -8,7 +8,7 @@ from partwise.mesh import TriMesh
 from partwise.store.array_store import ArrayStore
 from partwise.store.block_kinds import REMESH
 from partwise.store.levels import read_level, remeshed_arrays
-from partwise.store.open import open_array_store
+from partwise.store.open_arrays import open_array_store
 from partwise.testing.expect import raises
 from partwise.testing.meshes import subdivided
 

@@ -2,7 +2,6 @@
 
 from partwise.store.sql_catalog.accepts import SqlAcceptCatalog
 from partwise.store.sql_catalog.base import SqlBase as SqlBase
-from partwise.store.sql_catalog.base import utc_now as utc_now
 from partwise.store.sql_catalog.collections import SqlCollectionCatalog
 from partwise.store.sql_catalog.drafts import SqlDraftCatalog
 from partwise.store.sql_catalog.events import SqlEventCatalog

@@ -1,16 +1,13 @@
 """What every part of the SQL catalog has: an engine and a clock."""
 
 from collections.abc import Callable
-from datetime import UTC, datetime
+from datetime import datetime
 from types import TracebackType
 from typing import Self
 
 from sqlalchemy import Engine
 
-
-def utc_now() -> datetime:
-    """The present, aware, in UTC."""
-    return datetime.now(UTC)
+from partwise.store.clock import utc_now
 
 
 class SqlBase:
