@@ -12,8 +12,8 @@ from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
 from partwise.errors import StoreError
-from partwise_cli.child import end_with_parent
 from partwise_cli.logs import configure_logging
+from partwise_cli.parent_death import end_with_parent
 from partwise_service.app import create_app
 from partwise_service.settings import ServiceSettings
 

@@ -1,5 +1,6 @@
 /** The settings' sections, each with an address of its own, and who may see them. */
 import type { ComponentType } from "react";
+import type { RoomProps } from "../../app/roomAddress";
 import { hasRole, type Me, type Role } from "../../app/session/session";
 import { AuditSection } from "./audit/AuditSection";
 import { ExportSection } from "./export/ExportSection";
@@ -7,17 +8,13 @@ import { FilesSection } from "./files/FilesSection";
 import { LabellingSection } from "./labelling/LabellingSection";
 import { PeopleSection } from "./people/PeopleSection";
 
-export interface SectionProps {
-  collectionId: number;
-}
-
 export interface Section {
   path: string;
   name: string;
   role: Role;
   /** It is about everything, so a token for some collections does not open it. */
   isForAllCollections: boolean;
-  View: ComponentType<SectionProps>;
+  View: ComponentType<RoomProps>;
 }
 
 export const SECTIONS: readonly [Section, ...Section[]] = [

@@ -1,13 +1,13 @@
 import { useQuery } from "@tanstack/react-query";
 import { useState } from "react";
 import { api, body, type Schemas } from "../../../api/client";
+import type { RoomProps } from "../../../app/roomAddress";
 import { Panel } from "../../../components";
-import type { SectionProps } from "../sections";
 import { ExportForm } from "./ExportForm";
 import { ExportList } from "./ExportList";
 
 /** Labels out of the collection: what is wanted, the job that makes it, and the file. */
-export function ExportSection({ collectionId }: SectionProps) {
+export function ExportSection({ collectionId }: RoomProps) {
   const [lastId, setLastId] = useState<number | null>(null);
   const exports = useQuery({
     queryKey: ["jobs", collectionId, "exports"],

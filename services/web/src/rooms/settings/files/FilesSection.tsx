@@ -1,8 +1,7 @@
 import { Link } from "wouter";
-import { roomAddress } from "../../../app/roomAddress";
+import { type RoomProps, roomAddress } from "../../../app/roomAddress";
 import { useMe } from "../../../app/session/MeContext";
 import { Panel } from "../../../components";
-import type { SectionProps } from "../sections";
 import { DropArea } from "./DropArea";
 import { PrefixForm } from "./PrefixForm";
 import { TransferList } from "./TransferList";
@@ -10,7 +9,7 @@ import { useTransfers } from "./useTransfers";
 import { WaitingUploads } from "./WaitingUploads";
 
 /** Meshes into the collection: from this computer, or from folders that the machine's operator has listed. */
-export function FilesSection({ collectionId }: SectionProps) {
+export function FilesSection({ collectionId }: RoomProps) {
   const me = useMe();
   const { transfers, add, cancel, clear } = useTransfers(collectionId);
   return (
