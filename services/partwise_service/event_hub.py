@@ -100,17 +100,19 @@ class EventHub:
         self._newest = self._floor = (await run_sync(self._catalog.event_bounds)).newest
 
     async def _poll(self) -> None:
-        has_begun = False
+        has_begun = is_away = False
         while True:
             try:
                 if not has_begun:
                     await self.begin_now()
                     has_begun = True
-                while True:
-                    if await self.read_on() < PAGE:
-                        await asyncio.sleep(POLL_S)
+                is_behind = await self.read_on() == PAGE
+                is_away = False
             except PartwiseError:  # the catalog is away for a moment: streams are silent until it is back
-                _log.exception("events cannot be read")
+                if not is_away:  # said once, not every second
+                    _log.exception("events cannot be read")
+                is_away, is_behind = True, False
+            if not is_behind:
                 await asyncio.sleep(POLL_S)
 
     async def _prune(self) -> None:
