@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 import ray
+from ray.exceptions import RayError
 
 from partwise.config import StageLimits
 from partwise.store.records import FailureKind
@@ -12,7 +13,7 @@ from partwise_workers import pool
 from partwise_workers.actors import StageWorker
 from partwise_workers.events import ActorMemory, OnEvent, ignore_events
 from partwise_workers.last_words import LastWords, Progress, note_progress, read_progress
-from partwise_workers.pool import ActorPool, _Dead
+from partwise_workers.pool import ActorPool, _Dead, first_line
 from partwise_workers.supervision import Rules
 from partwise_workers.tasks import StagedName
 
@@ -103,3 +104,14 @@ def test_each_step_has_the_deadline_to_itself(make_bench, monkeypatch: pytest.Mo
         looks.append(workers.is_mourning)
     workers.close()
     assert looks == [False, True]
+
+
+def test_of_an_actor_that_could_not_be_made_the_line_that_says_why_is_told() -> None:
+    text = (
+        "The actor died because of an error raised in its creation task, ray::_Packer.__init__() (pid=4543, repr=<x>)\n"
+        "RuntimeError: The actor with name _Packer failed to import on the worker. Traceback:\n"
+        '  File "actors.py", line 28\n'
+        "ModuleNotFoundError: No module named 'zarr'\n"
+    )
+    assert first_line(RayError(text)) == "ModuleNotFoundError: No module named 'zarr'"
+    assert first_line(RayError("The actor is gone.\nIts node was lost.")) == "The actor is gone."

@@ -41,6 +41,9 @@ CLOSING_S = 5.0
 LAST_WORDS_S = 10.0
 """Seconds that a dead actor's sentinel has to tell why. It takes about one, on a busy machine several."""
 
+_NOT_CREATED = "error raised in its creation task"
+"""In what Ray says first of an actor that could not be made; what was raised there ends its text."""
+
 UNREACHABLE_S = 45.0
 """Seconds that Ray has to find out that a node is lost, of an actor that nobody reports as dead. It takes about 15."""
 
@@ -371,5 +374,5 @@ def first_line(error: Exception) -> str:
     """What an error says, in one line: of an error in an actor, what the actor raised."""
     cause = error.cause if isinstance(error, RayTaskError) and isinstance(error.cause, Exception) else error
     lines = [line.strip() for line in str(cause).splitlines() if line.strip()]
-    text = lines[0] if lines else ""
+    text = "" if not lines else lines[-1] if _NOT_CREATED in lines[0] else lines[0]
     return f"{type(cause).__name__}: {text}" if cause is not error else text or type(error).__name__
