@@ -55,7 +55,7 @@ StageName = Annotated[
 Searched = Annotated[str, NO_NUL, Field(min_length=1, max_length=MAX_NAME)]
 Name = Annotated[
     Searched | None,
-    Query(description="A part of the shape's name, letters in either case. No character stands for others."),
+    Query(description="A part of the shape's name, A to Z in either case. No character stands for others."),
 ]
 OrderName = Annotated[
     str, Query(pattern="^[a-z_]{1,64}$", description=f"`{NO_ORDER}` (by id), `{BY_NAME}`, or a score's name.")

@@ -18,7 +18,7 @@ class ShapeFilter:
 
     part_id : its newest shown labels have this part. author_id : who made those. cluster : in the embedding.
     failed_stage : the stage that failed for it, `ANY_STAGE` for whichever.
-    name : a part of its source key, letters in either case; of SQLite these are A to Z only.
+    name : a part of its source key, the letters A to Z in either case.
     """
 
     state: ShapeState | None = None

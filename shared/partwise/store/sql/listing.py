@@ -32,7 +32,7 @@ from partwise.store.records import (
     ShapeState,
 )
 from partwise.store.sql.collections import schema_version
-from partwise.store.sql.dialect import batches
+from partwise.store.sql.dialect import batches, has_in_it
 from partwise.store.sql.facets import copy_facets
 
 _FEW = 1_000
@@ -114,7 +114,7 @@ def _conditions(facets: Table, collection_id: int, where: ShapeFilter) -> list[C
     elif where.failed_stage is not None:
         conditions.append(facet.failed_stage == where.failed_stage)
     if where.name is not None:
-        conditions.append(facet.source_key.icontains(where.name, autoescape=True))
+        conditions.append(has_in_it(facet.source_key, where.name))
     return conditions
 
 

@@ -181,6 +181,7 @@ class ListingConformance:
             "d_1": [a],
             "100%": [a],
             "é": [c],
+            "É": [],
             "/": [a, b, c],
         }
         for name, ids in expected.items():
