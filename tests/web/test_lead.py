@@ -171,6 +171,8 @@ def test_labels_that_wait_for_a_look_are_accepted_or_sent_back(service, enter: E
     panel = lead.get_by_role("complementary", name="Reviews")
     expect(panel).to_contain_text("1 of 2")
     card = panel.get_by_role("article")
+    expect(card).to_contain_text("By ann")
+    expect(card).to_contain_text(re.compile(r"of work, \d+ clicks?"))
     accepted = card.get_by_role("heading").inner_text()
     card.get_by_role("button", name="Accept").click()
     expect(lead.get_by_text("Labels accepted")).to_be_visible()
@@ -208,6 +210,31 @@ def test_filters_and_order_are_in_the_address(enter: Enter, recorded: Recorded) 
     expect(page).to_have_url(re.compile("dir=desc"))
     page.get_by_role("button", name="Show any state").click()
     expect(_tiles(page)).to_have_count(8)
+
+
+def test_names_are_searched_from_the_keyboard(enter: Enter, recorded: Recorded) -> None:
+    page = enter("lena", "reviewer", "table")
+    expect(_tiles(page)).to_have_count(8)
+    name = _names(page)[3]
+    part = name.removesuffix(".off").upper()
+    page.keyboard.press("/")
+    page.keyboard.type(part)
+    box = page.get_by_role("textbox", name="Search names")
+    expect(box).to_have_value(part)
+    expect(page).to_have_url(re.compile(rf"\?name={part}$"))
+    expect(_tiles(page)).to_have_count(1)
+    assert _names(page) == [name]
+
+    page.get_by_label("Order by").select_option("name")
+    page.reload()
+    expect(box).to_have_value(part)
+    expect(_tiles(page)).to_have_count(1)
+    box.press("Control+a")
+    box.press_sequentially("no chair has this")
+    expect(page.get_by_text("No name has “no chair has this” in it")).to_be_visible()
+    box.press("Escape")
+    expect(_tiles(page)).to_have_count(8)
+    expect(page).to_have_url(re.compile(r"\?order=name$"))
 
 
 def test_shapes_are_picked_on_the_map_and_put_first(enter: Enter, recorded: Recorded) -> None:

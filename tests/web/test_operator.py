@@ -122,8 +122,17 @@ def test_a_job_that_waits_is_cancelled_and_asked_for_again(enter: Enter, recorde
     assert next(job["state"] for job in jobs if job["kind"] == "evaluate") == "pending"
 
 
+def test_a_worker_is_there_with_what_it_takes(empty_up, browse) -> None:
+    page = browse().new_page()
+    page.goto(empty_up.login_url)
+    page.get_by_role("link", name="Operations").click()
+    row = page.get_by_role("region", name="Workers").get_by_role("row").filter(has_text="Waits for a job")
+    expect(row).to_contain_text(re.compile(r"\d+(\.\d)? MB"))  # its memory
+    expect(row).to_contain_text(re.compile(r"\d+(\.\d)? [GT]B"))  # its disk
+
+
 def test_a_shape_that_somebody_holds_is_taken_away(enter: Enter, recorded: Recorded) -> None:
-    annotator = enter("ann", "annotator", "work")
+    annotator = enter("ann", "annotator", "work", expects_errors=True)  # 409, once the shape is no longer hers
     expect(annotator.get_by_role("button", name="Confirm and next")).to_be_enabled()
     held = annotator.get_by_label("Shape in hand").get_by_role("heading", level=2).inner_text()
 
