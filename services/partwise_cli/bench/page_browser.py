@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from time import sleep
 from typing import TYPE_CHECKING, Any
 
 from partwise.errors import StoreError
@@ -22,6 +23,9 @@ _FLAGS = (
 _WEB = Path(__file__).parents[2] / "web"
 _UNPACK_S = 120
 _WAIT_MS = 120_000
+_LOOK_S = 0.25
+_MOST_LOOKS = 20
+_IDLE_SHARE = 0.1  # of one processor
 
 # The viewer measures from what a person did until it has told the graphics card what to draw. Asking for a pixel then
 # waits until it is drawn: that is when a person could see it.
@@ -194,6 +198,15 @@ class ProcessorTime:
     def _by_process(self) -> dict[int, float]:
         found = self._session.send("SystemInfo.getProcessInfo")["processInfo"]
         return {each["id"]: each["cpuTime"] for each in found}
+
+
+def rest(browser: "Browser") -> None:
+    """Until the browser's processes are nearly idle, or for a few seconds."""
+    for _ in range(_MOST_LOOKS):
+        time = ProcessorTime(browser)
+        sleep(_LOOK_S)
+        if time.spent_ms() < _IDLE_SHARE * 1000 * _LOOK_S:
+            return
 
 
 class Meter:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from partwise_cli.bench.page_browser import Meter, ProcessorTime, measured, new_person, wait_until
+from partwise_cli.bench.page_browser import Meter, ProcessorTime, measured, new_person, rest, wait_until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -110,6 +110,7 @@ def measure_shape(
     page = context.new_page()
     for n_done in range(n_repeats):
         page.goto("about:blank")
+        rest(browser)  # from what the page before was still at
         warm.append(_first_paint(browser, page, origin + address))
         on_done(n_repeats + n_done + 1, n_steps)
     wait_until(page, _READY)
