@@ -128,8 +128,13 @@ def jump_to_rank(
         known = catalog.listed_shapes(ids, score_name)
         rows = [known[shape_id] for shape_id in ids]
     else:
-        n_shapes, built_at = catalog.count_shapes(collection.id, where=where, order=order), None
-        rows = catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit)
+        rows, built_at = (
+            catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit),
+            None,
+        )
+        n_shapes = first_rank + len(rows)
+        if len(rows) == limit or (first_rank and not rows):  # else the last one has been seen
+            n_shapes = catalog.count_shapes(collection.id, where=where, order=order)
     items = _with_tiles(catalog, caller, rows, order, first_rank)
     return RankedShapes(n_shapes=n_shapes, built_at=built_at, items=items)
 

@@ -149,6 +149,12 @@ def test_jumping_to_a_rank(annotator, table) -> None:
     assert jumped.json()["built_at"] is None
 
 
+@pytest.mark.parametrize(("first_rank", "limit"), [(0, 2), (0, 3), (0, 100), (2, 100), (3, 100), (9, 1)])
+def test_a_jump_says_how_many_there_are_wherever_it_goes(annotator, table, first_rank, limit) -> None:
+    jumped = annotator.get(f"{table}/ranked", params={"first_rank": first_rank, "limit": limit}).json()
+    assert (jumped["n_shapes"], len(jumped["items"])) == (3, max(0, min(limit, 3 - first_rank)))
+
+
 @pytest.mark.parametrize("order", ["none", "name", "entropy"])
 def test_jumps_take_filters(annotator, workspace, mugs, table, order) -> None:
     workspace.catalog.set_clusters(mugs.collection_id, {mugs.ids["a.off"]: 3, mugs.ids["sub/c.off"]: 3})
