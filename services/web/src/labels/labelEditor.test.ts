@@ -80,18 +80,6 @@ describe("an editor", () => {
     expect([...editor.labels]).toEqual([0, 0, 0, 0, 0, 0]);
   });
 
-  it("tells of changes until told not to", () => {
-    const editor = blank();
-    const told: number[] = [];
-    const stop = editor.subscribe(({ faces }) => told.push(faces.length));
-    editor.apply(assign(1, 2, 4));
-    editor.apply(assign(1, 2, 4)); // no change
-    editor.apply({ kind: "undo" });
-    stop();
-    editor.apply({ kind: "redo" });
-    expect(told).toEqual([2, 2]);
-  });
-
   it("does not follow the labels it was made from", () => {
     const labels = new Uint16Array(6);
     const editor = new LabelEditor(strip(), labels);

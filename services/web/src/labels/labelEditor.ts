@@ -32,7 +32,6 @@ export interface Change {
 export class LabelEditor {
   readonly mesh: SurfaceMesh;
   readonly #labels: Uint16Array;
-  readonly #listeners = new Set<(change: Change) => void>();
   #partIds: ReadonlySet<number> | null = null;
   #done: Change[] = [];
   #undone: Change[] = [];
@@ -71,12 +70,6 @@ export class LabelEditor {
     this.#partIds = partIds === null ? null : new Set([UNLABELLED, ...partIds]);
   }
 
-  /** Calls `listener` after every change of a face until the returned function is called. */
-  subscribe(listener: (change: Change) => void): () => void {
-    this.#listeners.add(listener);
-    return () => this.#listeners.delete(listener);
-  }
-
   /**
    * Does one operation and says what changed; what changed nothing must not be recorded as a stroke.
    *
@@ -84,8 +77,15 @@ export class LabelEditor {
    * NoStepError (nothing to undo or redo).
    */
   apply(operation: Operation): Change {
-    const change = this.#performed(operation);
-    if (change.faces.length > 0) for (const listener of this.#listeners) listener(change);
+    if (operation.kind === "undo") return this.#stepBack();
+    if (operation.kind === "redo") return this.#stepForward();
+    const change = this.preview(operation);
+    if (change.faces.length > 0) {
+      this.#write(change.faces, change.after);
+      this.#done.push(change);
+      if (this.#done.length > UNDO_LIMIT) this.#done.shift();
+      this.#undone = [];
+    }
     return change;
   }
 
@@ -106,19 +106,6 @@ export class LabelEditor {
       case "delta":
         return this.#differing(edit);
     }
-  }
-
-  #performed(operation: Operation): Change {
-    if (operation.kind === "undo") return this.#stepBack();
-    if (operation.kind === "redo") return this.#stepForward();
-    const change = this.preview(operation);
-    if (change.faces.length > 0) {
-      this.#write(change.faces, change.after);
-      this.#done.push(change);
-      if (this.#done.length > UNDO_LIMIT) this.#done.shift();
-      this.#undone = [];
-    }
-    return change;
   }
 
   #stepBack(): Change {
