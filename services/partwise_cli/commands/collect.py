@@ -111,7 +111,9 @@ def ingest(
     ws: WorkspaceArgument,
     source: Annotated[
         Path,
-        typer.Argument(help="OFF, OBJ, PLY, STL or GLB; a folder, zip or tar.gz of such.", show_default=False),
+        typer.Argument(
+            help="OFF, OBJ, PLY, STL or GLB; a folder, zip or tar.gz of such; folders of PartNet.", show_default=False
+        ),
     ],
     collection: CollectionOption = None,
 ) -> None:

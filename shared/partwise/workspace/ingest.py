@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from partwise.errors import FileFormatError, NotFoundError
 from partwise.io.read import MESH_SUFFIXES, read_bytes
 from partwise.store.records import Collection, IngestOutcome, NewShape
+from partwise.workspace.partnet_folders import folder_bytes, folder_key, with_folders
 from partwise.workspace.progress import OnRunProgress, RunProgress
 from partwise.workspace.workspace import Workspace
 
@@ -53,6 +54,8 @@ def ingest_folder(
 ) -> IngestReport:
     """Ingests every mesh file below the folder, by its relative path. Safe to repeat: what is known is left alone.
 
+    A folder of PartNet is one shape, of the mesh of all its pieces.
+
     A file that cannot be read, is empty, or would change under a confirmed shape is refused; the rest goes on.
     Progress is told after each file that was copied; a file counts as failed if it was refused.
 
@@ -62,10 +65,13 @@ def ingest_folder(
     """
     if not folder.is_dir():
         raise NotFoundError(f"ingest needs a file or a folder but {folder} is neither; check the path")
-    files = list(_outside(mesh_files(folder), workspace.array_url))
+    files = list(with_folders(_outside(mesh_files(folder), workspace.array_url), folder))
     intake = Intake(workspace, collection, on_progress, len(files))
     for path in files:
-        intake.take(path.relative_to(folder).as_posix(), partial(read_bytes, path))
+        if path.is_dir():
+            intake.take(folder_key(path, folder), partial(folder_bytes, path))
+        else:
+            intake.take(path.relative_to(folder).as_posix(), partial(read_bytes, path))
     report = intake.report()
     if report.is_empty:
         raise NotFoundError(f"ingest needs mesh files ({', '.join(sorted(MESH_SUFFIXES))}) but {folder} has none")

@@ -18,6 +18,7 @@ from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Collection, LabelRevision, Mesh, NewRevision, RevisionKind, Shape
 from partwise.unlabelled import NO_CLASS, NO_PART_ID
 from partwise.workspace.label_sources import NPZ_ENDING, PAIR_ENDING, POINTS_ENDING, read_own_labels
+from partwise.workspace.partnet_folders import folder_labels, folder_of
 from partwise.workspace.relabel import MoveReport, move_here, origin_on
 from partwise.workspace.shapes import all_shapes, shape_mesh
 from partwise.workspace.workspace import Workspace
@@ -59,7 +60,7 @@ def import_labels(
     mover: Callable[[Workspace, Collection], MoveReport] = move_here,
 ) -> ImportReport:
     """For each shape `a/b.off` reads the first of `a/b_labels.txt`, `a/b.pts` with `a/b.seg`, `a/b.seg`, `a/b.npz` and
-    `a/b.txt` (ShapeNetPart points) that is below the folder. A wrong file costs only itself.
+    `a/b.txt` (ShapeNetPart points) below the folder, or the PartNet folder `a/b`. A wrong one costs only itself.
 
     A `.seg` file holds part ids of the collection's schema, 0 or −1 for unlabelled. Labels are of the faces of the
     shape's own file or of its working mesh, whichever has so many; of the file where both have. Those of the file are
@@ -181,7 +182,10 @@ def _import(
     author: str,
 ) -> bool:
     """Commits one file's labels; whether they are new."""
-    if path.name.endswith((PSB_ENDING, SEG_ENDING)):
+    if path.is_dir():
+        mesh = workspace.catalog.original_meshes([shape.id]).get(shape.id) or shape_mesh(workspace, shape)
+        labels = folder_labels(path, mesh, schema)
+    elif path.name.endswith((PSB_ENDING, SEG_ENDING)):
         mesh = _mesh_of_file(workspace, shape, path)
         labels = read_labels(path, mesh.n_faces, schema)
     else:
@@ -248,7 +252,7 @@ def _same_labels(
 def _label_file(folder: Path, source_key: str) -> Path | None:
     stem = PurePosixPath(source_key).with_suffix("")
     candidates = (folder / f"{name}{ending}" for name in (source_key, stem) for ending in _ENDINGS)
-    return next((path for path in candidates if path.is_file()), None)
+    return next((path for path in candidates if path.is_file()), None) or folder_of(folder, source_key)
 
 
 def _naming(path: Path, error: PartwiseError) -> str:
