@@ -40,7 +40,10 @@ export function NameSearch({ name, onSearch }: NameSearchProps) {
     const timer = setTimeout(() => latest.current(typed), PAUSE_MS);
     return () => clearTimeout(timer);
   }, [typed]);
-  useSearchKey(() => input.current?.select());
+  useSearchKey(() => {
+    input.current?.focus();
+    input.current?.select();
+  });
 
   const clear = () => {
     setText("");
