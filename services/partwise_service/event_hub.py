@@ -7,9 +7,9 @@ from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from datetime import UTC, datetime, timedelta
 
+from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
 
-from partwise.errors import PartwiseError
 from partwise.store.catalog import EventCatalog
 from partwise.store.records import Event
 from partwise_service.security.recent import RecentlyGood
@@ -50,6 +50,7 @@ class EventHub:
         self._floor = 0  # the id after which all events are in `_recent`
         self._newest = 0
         self._has_news = asyncio.Event()
+        self._thread = CapacityLimiter(1)  # its own: word of a revocation does not wait behind busy handlers
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator["EventHub"]:
@@ -83,7 +84,7 @@ class EventHub:
     async def read_on(self) -> int:
         """Takes in what is new; how many events that are."""
         looked_at = self._clock()
-        found = await run_sync(lambda: self._catalog.events(after=self._newest, limit=PAGE))
+        found = await run_sync(lambda: self._catalog.events(after=self._newest, limit=PAGE), limiter=self._thread)
         self._recently_good.hear(found, looked_at, is_all=len(found) < PAGE)
         for event in found:
             if len(self._recent) == MAX_RECENT:
@@ -96,8 +97,9 @@ class EventHub:
         return len(found)
 
     async def begin_now(self) -> None:
-        """Goes on from the newest event on record."""
-        self._newest = self._floor = (await run_sync(self._catalog.event_bounds)).newest
+        """Goes on from the newest event on record; of those before it, it may have missed a revocation."""
+        self._newest = self._floor = (await run_sync(self._catalog.event_bounds, limiter=self._thread)).newest
+        self._recently_good.distrust_all()
 
     async def _poll(self) -> None:
         has_begun = is_away = False
@@ -108,7 +110,7 @@ class EventHub:
                     has_begun = True
                 is_behind = await self.read_on() == PAGE
                 is_away = False
-            except PartwiseError:  # the catalog is away for a moment: streams are silent until it is back
+            except Exception:  # noqa: BLE001 # the task's edge: streams are silent until the catalog is back
                 if not is_away:  # said once, not every second
                     _log.exception("events cannot be read")
                 is_away, is_behind = True, False
@@ -121,7 +123,7 @@ class EventHub:
                 before = datetime.now(UTC) - self._keep
                 while await run_sync(lambda: self._catalog.prune_events(before, limit=_PRUNED_AT_ONCE)):  # noqa: B023 # awaited in the loop
                     pass
-            except PartwiseError:
+            except Exception:  # noqa: BLE001 # as above
                 _log.exception("old events cannot be forgotten")
             await asyncio.sleep(self._prune_every_s)
 

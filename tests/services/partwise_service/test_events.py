@@ -5,6 +5,7 @@ import json
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from anyio.to_thread import current_default_thread_limiter
 
 from partwise.errors import StoreError
 from partwise.store.records import REVOKED, Event, EventBounds, EventKind, NewEvent, Role
@@ -224,7 +225,8 @@ def test_nothing_is_missed_when_the_hub_begins_after_a_stream() -> None:
     asyncio.run(listen())
 
 
-def test_a_reader_goes_on_where_it_was_when_the_catalog_was_away(monkeypatch, caplog) -> None:
+@pytest.mark.parametrize("fault", [StoreError("the database is away"), RuntimeError("nobody thought of it")])
+def test_a_reader_goes_on_where_it_was_when_the_catalog_was_away(monkeypatch, caplog, fault) -> None:
     monkeypatch.setattr(event_hub, "POLL_S", 0.0)
     catalog = _CountingCatalog()
     read = catalog.events
@@ -236,7 +238,7 @@ def test_a_reader_goes_on_where_it_was_when_the_catalog_was_away(monkeypatch, ca
         if not left[0]:
             catalog.add()  # which must not be passed over
             catalog.events = read
-        raise StoreError("the database is away")
+        raise fault
 
     async def run() -> list[int]:
         async with _hub(catalog).running() as hub:
@@ -252,13 +254,15 @@ def test_a_reader_goes_on_where_it_was_when_the_catalog_was_away(monkeypatch, ca
 
 
 def test_the_reader_hears_of_revocations(annotator, workspace) -> None:
-    catalog, recent = _CountingCatalog(), RecentlyGood(lambda: 1.0)
+    now = [1.0]
+    catalog, recent = _CountingCatalog(), RecentlyGood(lambda: now[0])
     token = workspace.catalog.authenticate(annotator.secret)
 
     async def listen() -> None:
-        hub = EventHub(catalog, timedelta(hours=1), recent, lambda: 1.0)
+        hub = EventHub(catalog, timedelta(hours=1), recent, lambda: now[0])
         await hub.begin_now()
-        recent.remember(b"a", token, 0.0)
+        now[0] = 2.0
+        recent.remember(b"a", token, now[0])
         await hub.read_on()
         assert recent.trusted(b"a") == token
         catalog.stored.append(Event(1, datetime(2026, 1, 1, tzinfo=UTC), REVOKED.kind, None, dict(REVOKED.payload)))
@@ -266,6 +270,34 @@ def test_the_reader_hears_of_revocations(annotator, workspace) -> None:
         assert recent.trusted(b"a") is None
 
     asyncio.run(listen())
+
+
+def test_what_was_looked_up_before_the_reader_began_is_not_trusted(annotator, workspace) -> None:
+    catalog, recent = _CountingCatalog(), RecentlyGood(lambda: 1.0)
+
+    async def listen() -> None:
+        hub = EventHub(catalog, timedelta(hours=1), recent, lambda: 1.0)
+        recent.remember(b"a", workspace.catalog.authenticate(annotator.secret), 0.5)
+        await hub.begin_now()
+        await hub.read_on()
+        assert recent.trusted(b"a") is None
+
+    asyncio.run(listen())
+
+
+def test_the_reader_does_not_wait_for_busy_handlers() -> None:
+    catalog = _CountingCatalog()
+
+    async def read_while_busy() -> int:
+        hub = _hub(catalog)
+        limiter = current_default_thread_limiter()
+        limiter.total_tokens = 1
+        async with limiter:
+            await hub.begin_now()
+            catalog.add()
+            return await asyncio.wait_for(hub.read_on(), 60)
+
+    assert asyncio.run(read_while_busy()) == 1
 
 
 def test_old_events_are_forgotten() -> None:
