@@ -71,7 +71,8 @@ async def stream_events(
         listener = Listener(hub, catalog, caller.token.scope)
 
         async def read(last: int) -> Sequence[Event]:
-            return [as_told(event, caller) for event in await listener.read(last)]
+            found = await listener.read(last)
+            return [as_told(event, caller) for event in found if not event.is_revocation]
 
         async for piece in event_stream(lambda: run_sync(catalog.event_bounds), read, go_on, resumed):
             yield piece

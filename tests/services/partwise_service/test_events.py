@@ -92,6 +92,15 @@ def test_who_holds_a_shape_and_operators_hear_that_it_was_taken_away_others_only
     assert payloads(other) == [about, about]
 
 
+def test_streams_do_not_tell_that_somebody_logged_out(annotator, admin, workspace, mugs, issue) -> None:
+    first = _add(workspace, mugs.collection_id, 0)
+    workspace.catalog.revoke_token(workspace.catalog.authenticate(issue("ben", Role.ANNOTATOR, None).secret).id, "ben")
+    _add(workspace, mugs.collection_id, 1)
+    for caller in (annotator, admin):
+        told = _events(caller.get("/events", params={"after": first}).text)
+        assert [kind for _, kind, _ in told] == ["begin", "stage"]
+
+
 def test_who_missed_forgotten_events_is_told_to_begin_anew(annotator, workspace, mugs) -> None:
     first = _add(workspace, mugs.collection_id, 1)
     _add(workspace, mugs.collection_id, 2)

@@ -28,7 +28,7 @@ class NewEvent:
 
 
 REVOKED = NewEvent(EventKind.PEOPLE, None, {"what": "revoked"})
-"""A token has ended before its time. It does not say whose: everybody hears it, as do all that trust tokens."""
+"""A token has ended before its time. It is for processes that trust tokens, all of them, and does not say whose."""
 
 
 @dataclass(frozen=True, slots=True)
