@@ -1,7 +1,7 @@
 // @vitest-environment jsdom
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { onSessionEnd } from "../api/sessionEnd";
-import { type MeshMessage, readMesh } from "./meshReader";
+import { type MeshMessage, newMeshReader } from "./meshReader";
 
 const WISH = { meshHash: "abc", shapeId: 3 };
 let worker: EventTarget & { postMessage: () => void; terminate: () => void };
@@ -12,7 +12,8 @@ beforeEach(() => {
 
 const tell = (data: unknown) =>
   worker.dispatchEvent(new MessageEvent("message", { data: data as MeshMessage }));
-const read = () => readMesh(WISH, worker as unknown as Worker);
+const reader = () => newMeshReader(worker as unknown as Worker);
+const read = () => reader().read(WISH);
 
 describe("a mesh on its way", () => {
   it("shows before faces are found in it, and ends its worker once both can be done", async () => {
@@ -50,5 +51,12 @@ describe("a mesh on its way", () => {
     const { surface } = read();
     worker.dispatchEvent(new ErrorEvent("error", { message: "out of memory" }));
     await expect(surface).rejects.toThrow("out of memory");
+  });
+
+  it("says so where its worker could not be loaded before it was known which mesh is wanted", async () => {
+    const early = reader();
+    worker.dispatchEvent(new Event("error"));
+    await expect(early.read(WISH).surface).rejects.toThrow("Load the page again");
+    expect(worker.terminate).toHaveBeenCalled();
   });
 });

@@ -21,28 +21,45 @@ export interface ComingMesh {
   tree(): Promise<SerializedBVH>;
 }
 
-const UNAUTHENTICATED = 401;
-
-/** Begins a worker: it takes a while until it listens, so it may begin before it is known which mesh is wanted. */
-export function newMeshWorker(): Worker {
-  return new Worker(new URL("./mesh.worker.ts", import.meta.url), { type: "module" });
+/** Reads one mesh. */
+export interface MeshReader {
+  read(wish: MeshWish): ComingMesh;
+  /** No mesh is wanted after all. */
+  end(): void;
 }
 
-/** A worker for each mesh: the next one is read while this one is, and nothing is left of it afterwards. */
-export function readMesh(wish: MeshWish, worker: Worker = newMeshWorker()): ComingMesh {
+const UNAUTHENTICATED = 401;
+/** Browsers give no reason, such as a version of the page that the service has no more. */
+const NOT_BEGUN = "what reads it could not be loaded. Load the page again.";
+
+/** It takes a while until it can read, so it may begin before it is known which mesh is wanted. */
+export function newMeshReader(worker: Worker = newWorker()): MeshReader {
   const end = () => worker.terminate();
+  // listened to from the first: a worker that cannot begin tells so once
   const surface = message(worker, "surface").then(({ surface }) => surface);
   const tree = message(worker, "tree").then(({ tree }) => tree);
   surface.catch(end);
   tree.then(end, end);
-  worker.postMessage(wish);
-  return {
-    surface,
-    tree: () => {
-      worker.postMessage("tree");
-      return tree;
-    },
+  const read = (wish: MeshWish): ComingMesh => {
+    worker.postMessage(wish);
+    return {
+      surface,
+      tree: () => {
+        worker.postMessage("tree");
+        return tree;
+      },
+    };
   };
+  return { read, end };
+}
+
+/** A worker for each mesh: the next one is read while this one is, and nothing is left of it afterwards. */
+export function readMesh(wish: MeshWish): ComingMesh {
+  return newMeshReader().read(wish);
+}
+
+function newWorker(): Worker {
+  return new Worker(new URL("./mesh.worker.ts", import.meta.url), { type: "module" });
 }
 
 type Told<K extends MeshMessage["kind"]> = Extract<MeshMessage, { kind: K }>;
@@ -51,7 +68,7 @@ type Told<K extends MeshMessage["kind"]> = Extract<MeshMessage, { kind: K }>;
 function message<K extends "surface" | "tree">(worker: Worker, kind: K): Promise<Told<K>> {
   return new Promise((resolve, reject) => {
     worker.addEventListener("error", (event) =>
-      reject(new Error(`The shape cannot be shown: ${event.message}`)),
+      reject(new Error(`The shape cannot be shown: ${event.message || NOT_BEGUN}`)),
     );
     worker.addEventListener("message", ({ data }: MessageEvent<MeshMessage>) => {
       if (data.kind === kind) resolve(data as Told<K>);

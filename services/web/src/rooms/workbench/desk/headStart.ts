@@ -5,7 +5,13 @@
  */
 import { type Claims, type Lease, type LeaseApi, leaseApi } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
-import { type ComingMesh, type MeshWish, newMeshWorker, readMesh } from "../../../viewer/meshReader";
+import {
+  type ComingMesh,
+  type MeshReader,
+  type MeshWish,
+  newMeshReader,
+  readMesh,
+} from "../../../viewer/meshReader";
 import { MAX_HELD } from "./desk";
 
 export class HeadStart {
@@ -17,7 +23,7 @@ export class HeadStart {
 
   /** shapeIds : asked for by name; none for those that the person has in hand. */
   constructor(collectionId: number, shapeIds: readonly number[]) {
-    const worker = newMeshWorker();
+    const reader = newMeshReader();
     this.#collectionId = collectionId;
     this.#shapeIds = shapeIds.slice(0, MAX_HELD);
     this.#named = shapeIds.length > 0 ? leaseApi.named(collectionId, [...this.#shapeIds]) : null;
@@ -25,8 +31,8 @@ export class HeadStart {
     this.#held.catch(() => {}); // who asks for it asks again
     const inHand = this.#named?.then(({ leases }) => leases) ?? this.#held;
     inHand.then(
-      (leases) => this.#readFirst(leases, worker),
-      () => worker.terminate(),
+      (leases) => this.#readFirst(leases, reader),
+      () => reader.end(),
     );
   }
 
@@ -55,12 +61,12 @@ export class HeadStart {
     return coming ?? readMesh(wish);
   };
 
-  #readFirst(leases: readonly Renewed<Lease>[], worker: Worker): void {
+  #readFirst(leases: readonly Renewed<Lease>[], reader: MeshReader): void {
     const lease = leases.find((each) => !each.lease.is_prefetched)?.lease;
-    if (lease === undefined || lease.mesh_hash === null) worker.terminate();
+    if (lease === undefined || lease.mesh_hash === null) reader.end();
     else {
       const wish = { meshHash: lease.mesh_hash, shapeId: lease.shape_id };
-      this.#meshes.set(keyOf(wish), readMesh(wish, worker));
+      this.#meshes.set(keyOf(wish), reader.read(wish));
     }
   }
 }
