@@ -13,6 +13,8 @@ class FakeQueue {
   waiting = [1, 2, 3];
   held: { shapeId: number; isPrefetched: boolean }[] = [];
   isDown = false;
+  /** Does not answer for now. */
+  isSlow = false;
 
   readonly api = {
     held: async () => this.held.map(({ shapeId, isPrefetched }) => leased(shapeId, isPrefetched)),
@@ -57,6 +59,7 @@ let outcome: ConfirmOutcome;
 let loaded: number[];
 let closed: number[];
 let taken: number[];
+let stopped: number[];
 
 beforeEach(() => {
   queue = new FakeQueue();
@@ -64,6 +67,7 @@ beforeEach(() => {
   loaded = [];
   closed = [];
   taken = [];
+  stopped = [];
 });
 
 function held({ lease }: Renewed<Lease>): HeldShape {
@@ -77,6 +81,7 @@ function held({ lease }: Renewed<Lease>): HeldShape {
     state: new Observable({ step: "mesh" } as HeldState),
     keeper: {
       renew: async () => {},
+      stop: () => stopped.push(lease.shape_id),
       state: { get: () => ({ kind: taken.includes(lease.shape_id) ? "taken-away" : "held" }) },
     },
     open: { draft: { confirm }, editor: { sha256: () => "sum" } },
@@ -84,6 +89,7 @@ function held({ lease }: Renewed<Lease>): HeldShape {
     begin: async () => {},
     seen: async () => {},
     takenUp: async () => {
+      if (queue.isSlow) await new Promise(() => {});
       const own = queue.held.find((each) => each.shapeId === lease.shape_id);
       if (own !== undefined) own.isPrefetched = false;
     },
@@ -136,6 +142,14 @@ describe("a desk", () => {
     const desk = await started();
     await desk.skip(desk.state.get().current as HeldShape, "broken");
     expect(current(desk)).toBe(2);
+  });
+
+  it("renews a shape no more once it is given back, though the next one is still on its way", async () => {
+    const desk = await started();
+    queue.isSlow = true;
+    void desk.skip(desk.state.get().current as HeldShape, "broken");
+    await settled();
+    expect([current(desk), stopped, closed]).toEqual([2, [1], []]);
   });
 
   it("is empty once nothing is left", async () => {

@@ -100,6 +100,7 @@ export class Desk {
 
   /** Takes a shape off the desk that is not this tab's any more, and goes on. */
   async leave(shape: HeldShape): Promise<void> {
+    shape.keeper.stop(); // a renewal would find its lease ended, and claim it again
     const shapes = this.state.get().shapes.filter((each) => each !== shape);
     const wasCurrent = this.state.get().current === shape;
     this.change({ shapes });
