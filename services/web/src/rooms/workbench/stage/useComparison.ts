@@ -47,6 +47,7 @@ export function useComparison(
     return () => {
       isOver = true;
       made?.dispose();
+      setFound(null); // who comes back to it is not shown what was given up
     };
   }, [shapeId, draft, shown, missing]);
   if (missing !== null) return { model: null, why: missing };
