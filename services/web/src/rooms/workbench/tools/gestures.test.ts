@@ -52,7 +52,7 @@ beforeEach(() => {
   gestures = new ToolGestures(view, {
     shelf,
     isDrawnOn: () => isDrawnOn,
-    open: () => ({ ...open, model }) as unknown as OpenShape,
+    open: () => (isDrawnOn ? ({ ...open, model } as unknown as OpenShape) : null),
     patches: () => null,
     colourOf: () => "#0072b2",
     onEngage: () => undefined,
@@ -111,6 +111,13 @@ describe("a view", () => {
     isDrawnOn = false;
     gestures.adopt();
     expect(view.tool).toBe("navigate");
+  });
+
+  it("leaves no brush on the draft, which other views go on showing", () => {
+    gestures.hover(hitOf(20));
+    isDrawnOn = false;
+    gestures.adopt();
+    expect([preview, brush]).toEqual([[], null]);
   });
 
   it("says why a key presses nothing at its middle", () => {

@@ -43,7 +43,7 @@ export class ToolGestures implements ViewListener {
     this.view.tool = tool === "turn" || !this.context.isDrawnOn() ? "navigate" : "stroke";
     this.view.strokeSpacing = tool === "paint" ? radius * SPACING : 0;
     this.region = null;
-    if (tool !== "paint") model?.setBrush(null);
+    if (tool !== "paint" || this.view.tool === "navigate") model?.setBrush(null);
     if (this.isStroking) return;
     model?.setPreview(null);
     if (this.pointer !== null && this.pointer.on === model) this.hover(this.pointer.hit);
