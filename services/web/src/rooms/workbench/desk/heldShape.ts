@@ -136,7 +136,9 @@ export class HeldShape {
       this.state.set({ step: "ready", model, open });
     } catch (error) {
       this.hasBegun = false;
+      const before = this.state.get();
       this.state.set({ step: "failed", why: error instanceof Error ? error.message : String(error) });
+      if (before.step === "labels") before.model.dispose(); // trying again has it drawn anew, or another one
     }
   }
 
