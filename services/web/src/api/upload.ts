@@ -1,6 +1,6 @@
 /** Files to the service, with how far they are: of what browsers have, only XMLHttpRequest tells that. */
 import type { Schemas } from "./client";
-import { Problem, problemOf, Unreachable } from "./problem";
+import { problemOf, Unreachable } from "./problem";
 import { announceSessionEnd } from "./sessionEnd";
 
 export type Upload = Schemas["UploadOut"];
@@ -37,9 +37,4 @@ async function answerOf(request: XMLHttpRequest): Promise<Upload> {
   if (response.ok) return response.json();
   if (response.status === UNAUTHENTICATED) announceSessionEnd();
   throw await problemOf(response);
-}
-
-/** Whether sending the same file again may go better. */
-export function isWorthRetrying(error: Error): boolean {
-  return !(error instanceof Problem) || error.status >= 500 || error.status === UNAUTHENTICATED;
 }
