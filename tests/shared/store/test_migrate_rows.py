@@ -10,9 +10,9 @@ from sqlalchemy import Engine, text
 
 from partwise.errors import ConflictError
 from partwise.labels.encoding import encode_labels
-from partwise.store.engine import connect_engine, parsed_url, writing
+from partwise.store.engine import connect_engine, parsed_url, reading, writing
 from partwise.store.migrate import migrate
-from partwise.store.records import NewClaim, ShapeFilter
+from partwise.store.records import NewClaim, ShapeFilter, ShapeOrder
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.testing.expect import raises
 
@@ -43,6 +43,8 @@ def _fill(engine: Engine) -> None:
         "(2, 2, 'describe', 'k', 'done', 1, 0, '{}', :now, false)",
         "INSERT INTO label_revision (id, shape_id, mesh_hash, kind, parent_id, author_id, schema_version, labels, "
         "n_faces, sha256, created_at) VALUES (1, 1, 'older', 'human', NULL, 1, 1, :labels, 4, :sha256, :now)",
+        "INSERT INTO model VALUES (1, 1, 1, '{}', 'models/1', '[1]', 1, :now)",
+        "INSERT INTO score VALUES (1, 'entropy', 1, 0.25, :now, 1), (2, 'entropy', 1, 0.75, :now, 1)",
     )
     with writing(engine) as connection:
         for statement in statements:
@@ -102,7 +104,7 @@ def test_revisions_are_still_append_only(migrated: SqlCatalog) -> None:
 
 
 def test_ready_shapes_without_labels_wait_in_the_queue(migrated: SqlCatalog) -> None:
-    assert migrated.waiting_shapes(1) == [2]
+    assert migrated.queue_depth(1).n_free == 1
     claimed = migrated.claim_next(NewClaim(1, 1, 60, 0.5))
     assert claimed is not None
     assert claimed.shape_id == 2
@@ -113,3 +115,11 @@ def test_the_table_of_shapes_is_filled(migrated: SqlCatalog) -> None:
     assert {shape_id: row.state for shape_id, row in rows.items()} == migrated.shape_states([1, 2])
     assert (rows[1].author_id, rows[2].author_id) == (1, None)
     assert [row.shape.id for row in migrated.list_shapes(1, where=ShapeFilter(part_id=2))] == [1]
+
+
+def test_orders_by_score_have_what_shapes_are_filtered_by(migrated: SqlCatalog) -> None:
+    order = ShapeOrder("entropy", descending=True)
+    assert [row.shape.id for row in migrated.list_shapes(1, order=order)] == [2, 1]
+    with reading(migrated._engine) as connection:
+        copies = connection.execute(text("SELECT shape_id, state, author_id, source_key FROM score ORDER BY shape_id"))
+        assert [tuple(row) for row in copies] == [(1, "confirmed", 1, "a.off"), (2, "ready", None, "b.off")]
