@@ -24,4 +24,9 @@ if (code === null) {
   void queries.prefetchQuery(meQuery);
   void queries.prefetchQuery(collectionsQuery);
 }
-page.then(({ showPage }) => showPage(queries, code, headStart));
+page.then(({ showPage }) => showPage(queries, code, headStart), sayThatNothingCame);
+
+/** Else the window stays empty: where the network went, or the service has another version by now. */
+function sayThatNothingCame(): void {
+  document.body.textContent = "The page could not be loaded. Check the connection, then load it again.";
+}
