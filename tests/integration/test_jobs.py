@@ -136,7 +136,8 @@ def test_preprocessing_describes_and_chooses_the_first_shapes(preprocessed: Lab)
     firsts = [first.shape_id for first in catalog.first_shapes(preprocessed.collection_id)]
     assert catalog.state_counts(preprocessed.collection_id)[ShapeState.READY] == N_SHAPES
     assert len(firsts) == 4
-    assert set(catalog.clusters(catalog.waiting_shapes(preprocessed.collection_id)).values()) == {0, 1}
+    shape_ids = [row.shape.id for row in catalog.list_shapes(preprocessed.collection_id)]
+    assert set(catalog.clusters(shape_ids).values()) == {0, 1}
     assert catalog.ordering(preprocessed.collection_id) is not None
 
 
@@ -151,7 +152,7 @@ def test_confirming_enough_leads_to_a_model_and_an_evaluation(trained: tuple[Lab
 def test_the_queue_is_ranked_by_the_model(trained: tuple[Lab, list[int]]) -> None:
     lab, confirmed = trained
     catalog = lab.workspace.catalog
-    waiting = catalog.waiting_shapes(lab.collection_id)
+    waiting = catalog.highest_waiting(lab.collection_id, "entropy", N_SHAPES)
     assert set(waiting).isdisjoint(confirmed)
     scores = catalog.scores(waiting, "entropy")
     clusters = catalog.clusters(waiting)

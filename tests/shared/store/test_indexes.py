@@ -47,7 +47,6 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "active leases": lambda catalog, i: catalog.active_leases(i),
     "held shapes": lambda catalog, i: catalog.held_shapes([1, 2]),
     "score that ranks": lambda catalog, i: catalog.ranking_score(i),
-    "waiting shapes": lambda catalog, i: catalog.waiting_shapes(i),
     "highest that wait": lambda catalog, i: catalog.highest_waiting(i, "entropy", 9),
     "out of rank": lambda catalog, i: catalog.out_of_rank(i, "entropy"),
     "strokes": lambda catalog, i: catalog.strokes(1),

@@ -110,10 +110,6 @@ class QueueCatalog(Protocol):
         """The score by which the queue was ranked last, `DEFAULT_RANKING` if it never was."""
         ...
 
-    def waiting_shapes(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[int]:
-        """A page of the ids of shapes that wait for labels, free or held, by id."""
-        ...
-
     def fill_queue(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> int | None:
         """Bring a page of shapes in line with `labels_per_shape`, by id; the last id of it, None after the last.
 

@@ -181,18 +181,6 @@ def following_places(connection: Connection, place: Row[Any], n_wanted: int) -> 
     return list(found.values())[:n_wanted]
 
 
-def waiting_shapes(connection: Connection, collection_id: int, after: int, limit: int) -> list[int]:
-    place = t.queue_rank.c
-    query = (
-        select(place.shape_id)
-        .distinct()
-        .where(place.collection_id == collection_id, place.shape_id > after)
-        .order_by(place.shape_id)
-        .limit(limit)
-    )
-    return list(connection.execute(query).scalars())
-
-
 def fill(connection: Connection, collection_id: int, after: int, limit: int, now: datetime) -> int | None:
     facet = t.shape_facet
     query = (

@@ -83,10 +83,6 @@ class SqlQueueCatalog(SqlBase):
             schema_version(connection, collection_id)
             return told.ranking_score(connection, collection_id)
 
-    def waiting_shapes(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[int]:
-        with reading(self._engine) as connection:
-            return places.waiting_shapes(connection, collection_id, after, limit)
-
     def fill_queue(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> int | None:
         with writing(self._engine) as connection:
             return places.fill(connection, collection_id, after, limit, self._clock())

@@ -33,6 +33,7 @@ from partwise.testing.catalog.samples import (
     confirm,
     label,
     leased_shape,
+    n_waiting,
     ready_shapes,
     strokes,
 )
@@ -61,7 +62,7 @@ class ConfirmationConformance:
         assert catalog.lease(lease.id).outcome is LeaseOutcome.COMPLETED
         assert catalog.draft(confirmation.draft_id).outcome is DraftOutcome.CONFIRMED
         assert catalog.shape_states([lease.shape_id]) == {lease.shape_id: ShapeState.CONFIRMED}
-        assert catalog.waiting_shapes(collection.id) == []
+        assert n_waiting(catalog, collection) == 0
         assert {entry.action for entry in catalog.audit()} >= {"label", "confirm"}
 
     def test_confirming_again_returns_what_became_of_it(self, catalog: Catalog) -> None:
@@ -195,7 +196,7 @@ class ConfirmationConformance:
         assert review_id is not None
         rework = catalog.reject_review(review_id, lease.person_id, "hm")
         catalog.accept_review(rework.id, lease.person_id)
-        assert catalog.waiting_shapes(collection.id) == []
+        assert n_waiting(catalog, collection) == 0
 
     def test_labels_that_agree_become_the_shapes(self, catalog: Catalog) -> None:
         _, (first, second) = _two_leased(catalog)
@@ -250,7 +251,7 @@ class ConfirmationConformance:
         assert catalog.jobs(collection.id) == []
         (check,) = catalog.blind_checks(collection.id)
         assert (check.person_id, check.reference_id, check.closeness) == (lease.person_id, reference.id, FAR)
-        assert catalog.waiting_shapes(collection.id) == [known]
+        assert n_waiting(catalog, collection) == 1
 
     @pytest.mark.parametrize("is_blind", [False, True])
     def test_events_do_not_say_what_work_was_for(self, catalog: Catalog, is_blind: bool) -> None:

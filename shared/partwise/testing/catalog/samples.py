@@ -108,6 +108,12 @@ def ready_shapes(catalog: Catalog, n_shapes: int, name: str = "chairs") -> tuple
     return collection, shape_ids
 
 
+def n_waiting(catalog: Catalog, collection: Collection) -> int:
+    """How many labels the collection's shapes wait for, free or held."""
+    depth = catalog.queue_depth(collection.id)
+    return depth.n_free + depth.n_held
+
+
 def claim(catalog: Catalog, collection: Collection, person: Person, *, is_prefetch: bool = False) -> Lease:
     """The next shape for a person, where there is one."""
     lease = catalog.claim_next(NewClaim(collection.id, person.id, 60.0, 0.999, is_prefetch))
