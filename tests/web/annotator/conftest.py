@@ -20,6 +20,11 @@ _FROM_THE_MIDDLE = sorted(product(_STEPS, repeat=2), key=lambda at: (at[0] - 0.5
 """Places of a view as shares of its width and height, the middle first."""
 
 
+def _pixels_of(view: Locator) -> np.ndarray:
+    """(height, width, 3) what a view shows, 0 to 255."""
+    return np.asarray(Image.open(BytesIO(view.screenshot())).convert("RGB"), dtype=np.int64)
+
+
 @dataclass(frozen=True)
 class Bench:
     """The workbench in one tab: what its person sees of the shape in hand, and what the service has on record of it."""
@@ -88,9 +93,15 @@ class Bench:
 
     def surface_share(self) -> float:
         """How much of the view the shape covers, from 0 to 1: what is not as grey as the stage."""
-        picture = Image.open(BytesIO(self.view.screenshot())).convert("RGB")
-        pixels = np.asarray(picture, dtype=np.int64)
+        pixels = _pixels_of(self.view)
         return float((np.abs(pixels - pixels[2, 2]).sum(axis=2) > 24).mean())
+
+    @staticmethod
+    def middle_of(view: Locator) -> np.ndarray:
+        """(height, width, 3) what a view shows, without what stands in its corners."""
+        pixels = _pixels_of(view)
+        height, width, _ = pixels.shape
+        return pixels[height // 4 : -height // 4, width // 4 : -width // 4]
 
     def _position(self, across: float, down: float) -> Position:
         box = self.view.bounding_box()
