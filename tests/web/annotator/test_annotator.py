@@ -1,5 +1,6 @@
 """The way of an annotator, from the address that `partwise up` shows to a model that has learnt from them."""
 
+import re
 import shutil
 from datetime import datetime
 from itertools import islice
@@ -306,6 +307,17 @@ def test_a_shape_that_somebody_else_has_is_refused_by_its_name(bench, log_in) ->
     other = log_in("who wants the same", expects_errors=True)
     other.page.goto(f"{bench.origin}/c/1/work?shapes={lease['shape_id']}")
     expect(other.page.get_by_text(f"{lease['source_key']} is with someone else now")).to_be_visible()
+
+
+def test_a_shape_that_nothing_reads_says_so_and_is_shown_once_asked_again(log_in) -> None:
+    bench = log_in("whose network drops a file", expects_errors=True)
+    reader = re.compile(r"/mesh\.worker-[^/]*\.js$")
+    bench.page.route(reader, lambda route: route.abort())
+    bench.page.goto(f"{bench.origin}/c/1/work")
+    expect(bench.page.get_by_text("what reads it could not be loaded")).to_be_visible()
+    bench.page.unroute(reader)
+    bench.page.get_by_role("button", name="Try again").click()
+    bench.wait_saved()
 
 
 def test_nobody_confirms_a_shape_that_cannot_be_shown(log_in) -> None:
