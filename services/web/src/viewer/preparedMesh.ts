@@ -1,6 +1,6 @@
 /** A mesh with all that viewing and painting need of it. */
 import { SurfaceMesh } from "../geometry/surfaceMesh";
-import { type PreparedSurface, preparedSurface } from "./surfacePreparation";
+import type { PreparedSurface } from "./surfacePreparation";
 
 export interface PreparedMesh {
   readonly mesh: SurfaceMesh;
@@ -12,9 +12,4 @@ export function meshOf(surface: PreparedSurface, hash: string): PreparedMesh {
   const mesh = new SurfaceMesh(surface.vertices, surface.faces, hash);
   mesh.adopt(surface.measures, surface.graph);
   return { mesh, surface };
-}
-
-/** Prepares a small mesh here and now. */
-export function preparedHere(mesh: SurfaceMesh): PreparedMesh {
-  return meshOf(preparedSurface(mesh), mesh.hash);
 }

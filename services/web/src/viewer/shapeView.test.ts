@@ -1,10 +1,11 @@
 // @vitest-environment jsdom
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { SurfaceMesh } from "../geometry/surfaceMesh";
-import { preparedHere } from "./preparedMesh";
+import { meshOf } from "./preparedMesh";
 import { builtTree, readTree } from "./searchTree";
 import { type Hit, ShapeModel } from "./shapeModel";
 import { ShapeView, type ViewListener } from "./shapeView";
+import { preparedSurface } from "./surfacePreparation";
 
 const SIZE = 200;
 const [INSIDE, BESIDE] = [100, 3];
@@ -25,7 +26,7 @@ function square(): SurfaceMesh {
 }
 
 const mesh = square();
-const model = new ShapeModel(preparedHere(mesh));
+const model = new ShapeModel(meshOf(preparedSurface(mesh), mesh.hash));
 model.pickWith(readTree(builtTree(mesh), mesh));
 let view: ShapeView;
 let told: string[];
