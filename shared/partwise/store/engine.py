@@ -56,7 +56,10 @@ def connect_engine(url: URL) -> Engine:
     is_sqlite = url.drivername == "sqlite"
     patience = {} if is_sqlite or "connect_timeout" in url.query else {"connect_timeout": CONNECT_TIMEOUT_S}
     try:
-        engine = create_engine(url, pool_size=KEPT_CONNECTIONS, pool_use_lifo=True, connect_args=patience)
+        # callers bound their threads: one that may run is not made to wait for a connection, and fail
+        engine = create_engine(
+            url, pool_size=KEPT_CONNECTIONS, max_overflow=-1, pool_use_lifo=True, connect_args=patience
+        )
     except (ImportError, NoSuchModuleError) as error:
         raise StoreError(f"{url.drivername} needs a driver ({error}); install partwise[cloud]") from error
     if is_sqlite:

@@ -3,6 +3,7 @@
 import multiprocessing
 import sqlite3
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from sqlalchemy import create_engine, event, text
 from partwise.errors import ConfigError, ConflictError, StoreError
 from partwise.store import engine as engines
 from partwise.store import tables
-from partwise.store.engine import parsed_url, writing
+from partwise.store.engine import parsed_url, reading, writing
 from partwise.store.open import open_catalog
 from partwise.store.records import NewShape, NewStageRun
 from partwise.store.sql_catalog import SqlCatalog
@@ -44,6 +45,13 @@ def test_threads_share_a_catalog(catalog: SqlCatalog) -> None:
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(lambda shape_id: publish(catalog, [shape_id]), ids))
     assert set(catalog.stage_runs(ids, "describe")) == set(ids)
+
+
+def test_as_many_read_at_once_as_have_threads(catalog: SqlCatalog) -> None:
+    n_readers = 2 * engines.KEPT_CONNECTIONS
+    with ExitStack() as stack:
+        readers = [stack.enter_context(reading(catalog._engine)) for _ in range(n_readers)]
+        assert [reader.execute(text("SELECT 1")).scalar() for reader in readers] == [1] * n_readers
 
 
 def test_reads_go_on_while_another_writes(catalog: SqlCatalog) -> None:
