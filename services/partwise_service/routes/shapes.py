@@ -128,11 +128,8 @@ def jump_to_rank(
         known = catalog.listed_shapes(ids, score_name)
         rows = [known[shape_id] for shape_id in ids]
     else:
-        rows, built_at = (
-            catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit),
-            None,
-        )
-        n_shapes = first_rank + len(rows)
+        rows = catalog.shapes_from_rank(collection.id, first_rank, where=where, order=order, limit=limit)
+        n_shapes, built_at = first_rank + len(rows), None
         if len(rows) == limit or (first_rank and not rows):  # else the last one has been seen
             n_shapes = catalog.count_shapes(collection.id, where=where, order=order)
     items = _with_tiles(catalog, caller, rows, order, first_rank)
