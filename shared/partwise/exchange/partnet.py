@@ -91,12 +91,13 @@ def read_partnet(folder: Path | str, hierarchy: str | None = None, limits: ReadL
 
     Raises
     ------
-    FileFormatError : a file is missing, truncated or not as above; a piece's name leads out of its folder, or the piece
-        is a link; too many nodes, or nested too deeply; too many faces.
+    FileFormatError : a file is missing, truncated or not as above; a piece's name leads out of its folder, or it or
+        the hierarchy is a link; too many nodes, or nested too deeply; too many faces.
     LabelError : two parts claim one piece.
     """
     folder, limits = Path(folder), limits or ReadLimits()
     path = folder / (hierarchy or _hierarchy_file(folder))
+    _refuse_link(path)
     try:
         nodes = parse_hierarchy(read_label_text(path, None))
         node_of_piece = _node_of_piece(nodes)
@@ -194,9 +195,13 @@ def _ancestors(node: PartNetNode, by_id: dict[int, PartNetNode]) -> Iterator[int
 def _read_piece(folder: Path, piece: str, limits: ReadLimits) -> TriMesh:
     path = folder / f"{piece}.obj"
     for place in (folder, path):
-        if place.is_symlink():
-            raise FileFormatError(f"{place}: a piece must be a file of the shape's folder but is a link; copy it there")
+        _refuse_link(place)
     return read_mesh(path, limits=limits)
+
+
+def _refuse_link(place: Path) -> None:
+    if place.is_symlink():
+        raise FileFormatError(f"{place}: what a shape is made of must be in its folder but is a link; copy it there")
 
 
 def _hierarchy_file(folder: Path) -> str:

@@ -44,11 +44,11 @@ def folder_key(folder: Path, top: Path) -> str:
 
 
 def folder_bytes(folder: Path) -> bytes:
-    """The mesh of all pieces, as an OFF file. FileFormatError : it cannot be read as PartNet's."""
+    """The mesh of all pieces, as an OFF file. FileFormatError : it cannot be read as PartNet's; without where it is."""
     try:
         return format_off(read_partnet(folder).mesh)
-    except LabelError as error:
-        raise FileFormatError(str(error)) from error
+    except (FileFormatError, LabelError) as error:
+        raise FileFormatError(str(error).replace(f"{folder}/", "")) from error
 
 
 def folder_of(top: Path, source_key: str) -> Path | None:

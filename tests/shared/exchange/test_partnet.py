@@ -124,6 +124,14 @@ def test_a_piece_that_is_a_link_is_refused(tmp_path):
         read_partnet(tmp_path / "a")
 
 
+def test_a_hierarchy_that_is_a_link_is_refused(tmp_path):
+    write_shape(tmp_path / "a")
+    (tmp_path / "a/result.json").rename(tmp_path / "elsewhere.json")
+    (tmp_path / "a/result.json").symlink_to(tmp_path / "elsewhere.json")
+    with pytest.raises(FileFormatError, match="is a link"):
+        read_partnet(tmp_path / "a")
+
+
 def test_a_folder_of_pieces_that_is_a_link_is_refused(tmp_path):
     write_shape(tmp_path / "a")
     (tmp_path / "b").mkdir()
