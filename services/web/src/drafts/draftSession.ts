@@ -6,7 +6,7 @@
 import type { StrokeJson } from "../labels/strokes";
 import { type ConfirmOutcome, confirmDraft } from "./confirming";
 import { EditingRight, type TabMessage, type Tabs } from "./editingRight";
-import type { LeaseKeeper, LeaseRecord } from "./leaseKeeper";
+import type { LeaseKeeper, LeaseRecord, LeaseState } from "./leaseKeeper";
 import { Observable } from "./observable";
 import { draftIdentity } from "./outbox";
 import { type SenderParts, StrokeSender } from "./strokeSender";
@@ -47,6 +47,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
     this.right.onMessage = (message) => this.receive(message);
     this.right.beforeHandOver = () => this.sender.pause();
     keeper.onReclaimed = (lease) => void this.reopen(lease.id);
+    keeper.state.subscribe(() => this.leaseChanged(keeper.state.get()));
   }
 
   /** The draft of the keeper's lease with all its strokes. It edits, or watches where another tab edits. */
@@ -115,6 +116,10 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
   private async reopen(leaseId: number): Promise<void> {
     const now = await this.parts.openDraft(leaseId, this.draft.base_revision).catch(() => this.draft);
     if (now.id !== this.draft.id) this.isConfirmedElsewhere.set(true);
+  }
+
+  private leaseChanged(lease: LeaseState): void {
+    if (lease.kind === "ended" && lease.how === "confirmed") this.isConfirmedElsewhere.set(true);
   }
 
   private async takeUp(): Promise<void> {

@@ -85,13 +85,29 @@ describe("a lease", () => {
     answers = [fails(conflict("lease 1 is cleared", { outcome: "cleared" }))];
     await keeper.renew();
     await clock.advance(10 * LEASE_MS);
-    expect([keeper.state.get(), nRenewals, keeper.lease.id]).toEqual([{ kind: "taken-away" }, 1, 1]);
+    expect([keeper.state.get(), nRenewals, keeper.lease.id]).toEqual([
+      { kind: "ended", how: "taken-away" },
+      1,
+      1,
+    ]);
 
     claims = [fails(conflict("chair.off is with someone else now"))];
     await expect(keeper.claimBack()).rejects.toThrow("with someone else");
-    expect(keeper.state.get().kind).toBe("taken-away");
+    expect(keeper.state.get().kind).toBe("ended");
     await keeper.claimBack();
     expect([keeper.state.get().kind, keeper.lease.id]).toEqual(["held", 2]);
+  });
+
+  it.each([
+    ["skipped", "given-back"],
+    ["released", "given-back"],
+    ["completed", "confirmed"],
+  ])("that its person ended as %s elsewhere is not claimed again", async (outcome, how) => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    answers = [fails(conflict(`lease 1 is ${outcome}`, { outcome }))];
+    await keeper.renew();
+    await clock.advance(10 * LEASE_MS);
+    expect([keeper.state.get(), keeper.lease.id]).toEqual([{ kind: "ended", how }, 1]);
   });
 
   it("tells that work has begun as often as it takes, then no more", async () => {

@@ -32,8 +32,11 @@ export type LeaseState =
   | { readonly kind: "unsure" }
   /** Somebody else has the shape. Strokes are still taken. */
   | { readonly kind: "lost"; readonly why: string }
-  /** An operator took the shape away: it is claimed again only if the person asks. Strokes are still taken. */
-  | { readonly kind: "taken-away" };
+  /** Somebody ended the lease: the shape is claimed again only if the person asks. Strokes are still taken. */
+  | { readonly kind: "ended"; readonly how: LeaseEnd };
+
+/** taken-away : by an operator. given-back, confirmed : by the person, in another tab or on another computer. */
+export type LeaseEnd = "taken-away" | "given-back" | "confirmed";
 
 const SHORTEST_MS = 5_000;
 const RENEWALS_A_LEASE = 3;
@@ -81,7 +84,7 @@ export class LeaseKeeper<L extends LeaseRecord> {
     }
   }
 
-  /** After it was taken away: claims the shape again, because the person wants it. Rejects if it is not to be had. */
+  /** After it was ended: claims the shape again, because the person wants it. Rejects if it is not to be had. */
   claimBack(): Promise<void> {
     return this.reclaim();
   }
@@ -97,7 +100,8 @@ export class LeaseKeeper<L extends LeaseRecord> {
       this.hold(await this.transport.renew(this.held.id, this.wish));
     } catch (error) {
       const failure = failureOf(error);
-      if (isCleared(error)) this.state.set({ kind: "taken-away" });
+      const how = endOf(error);
+      if (how !== null) this.state.set({ kind: "ended", how });
       else if (failure.kind === "closed" || failure.kind === "stale") await this.claimAgain();
       else this.later(failure.why, failure.kind === "refused");
     }
@@ -143,7 +147,15 @@ export class LeaseKeeper<L extends LeaseRecord> {
   }
 }
 
-/** Whether a renewal was refused because an operator had ended the lease. */
-function isCleared(error: unknown): boolean {
-  return error instanceof Problem && error.document.outcome === "cleared";
+const ENDS: Readonly<Record<string, LeaseEnd>> = {
+  cleared: "taken-away",
+  released: "given-back",
+  skipped: "given-back",
+  completed: "confirmed",
+};
+
+/** How somebody ended the lease that is not renewed; null if nobody did, but time. */
+function endOf(error: unknown): LeaseEnd | null {
+  const outcome = error instanceof Problem ? error.document.outcome : undefined;
+  return typeof outcome === "string" ? (ENDS[outcome] ?? null) : null;
 }

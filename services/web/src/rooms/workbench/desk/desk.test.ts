@@ -82,7 +82,7 @@ function held({ lease }: Renewed<Lease>): HeldShape {
     keeper: {
       renew: async () => {},
       stop: () => stopped.push(lease.shape_id),
-      state: { get: () => ({ kind: taken.includes(lease.shape_id) ? "taken-away" : "held" }) },
+      state: { get: () => ({ kind: taken.includes(lease.shape_id) ? "ended" : "held" }) },
     },
     open: { draft: { confirm }, editor: { sha256: () => "sum" } },
     load: () => loaded.push(lease.shape_id),

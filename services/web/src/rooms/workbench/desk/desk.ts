@@ -128,7 +128,7 @@ export class Desk {
   async recheck(shapeId: number): Promise<void> {
     const shape = this.all().find((each) => each.shapeId === shapeId);
     await shape?.keeper.renew();
-    const isGone = shape?.keeper.state.get().kind === "taken-away" && shape === this.ahead;
+    const isGone = shape?.keeper.state.get().kind === "ended" && shape === this.ahead;
     if (!isGone) return;
     this.ahead = null; // nobody has seen it yet: another one comes in its place, and no word about it
     await shape.close();

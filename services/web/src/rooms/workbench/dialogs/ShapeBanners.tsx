@@ -1,6 +1,7 @@
 import type { ReactNode } from "react";
 import { Button, Notice, useToast } from "../../../components";
 import { count } from "../../../components/numbers";
+import type { LeaseEnd } from "../../../drafts/leaseKeeper";
 import { useObservable } from "../../../drafts/useObservable";
 import type { HeldShape } from "../desk/heldShape";
 import type { OpenShape } from "../shape/openShape";
@@ -36,7 +37,7 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
           {sentence(lease.why)} Your strokes are kept.
         </Notice>
       )}
-      {lease.kind === "taken-away" && !isLossTold && <TakenAway held={held} leave={leave} />}
+      {lease.kind === "ended" && !isLossTold && <Ended held={held} how={lease.how} leave={leave} />}
       {role === "watching" && <Watching open={open} />}
       {save.kind === "conflict" && <ConflictBar open={open} divergence={save.divergence} />}
       {(save.kind === "closed" || save.kind === "refused") && (
@@ -47,14 +48,20 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
   );
 }
 
-/** An operator freed the shape: the person may go on elsewhere, or ask for it again. */
-function TakenAway({ held, leave }: { held: HeldShape; leave: ReactNode }) {
+const ENDED: Readonly<Record<LeaseEnd, string>> = {
+  "taken-away": "An operator took this shape back",
+  "given-back": "You gave this shape back elsewhere",
+  confirmed: "You confirmed this shape elsewhere",
+};
+
+/** The shape was freed: the person may go on elsewhere, or ask for it again. */
+function Ended({ held, how, leave }: { held: HeldShape; how: LeaseEnd; leave: ReactNode }) {
   const showToast = useToast();
   const claimBack = () =>
     held.keeper.claimBack().catch((error: Error) => showToast({ message: error.message, tone: "bad" }));
   return (
     <Notice
-      title="An operator took this shape back"
+      title={ENDED[how]}
       actions={
         <>
           {leave}
