@@ -17,6 +17,8 @@ from partwise.workspace.workspace import open_workspace
 START = 1
 """Strokes of a draft before its person does anything: the labels that it starts from."""
 TRAINING_MS = 240_000
+FIRST_CUT_MS = 120_000
+"""Where nothing ran before, the kernels that cut are compiled first."""
 OTHER_COLOURS = 20
 """Of 255, on average: more than smoother edges make of it."""
 
@@ -65,7 +67,7 @@ def two_places(bench) -> list[tuple[float, float]]:
 
 def label_by_patches(bench, first, second) -> None:
     """From nothing: a click at one place, a drag from the other. The rest stays grey."""
-    with bench.page.expect_response("**/patches"):
+    with bench.page.expect_response("**/patches", timeout=FIRST_CUT_MS):
         start_from(bench, "Patches")
     expect(bench.page.get_by_text("Cutting…")).to_be_hidden()
     bench.page.keyboard.press("1")
@@ -148,7 +150,7 @@ def test_every_tool_by_keyboard(bench) -> None:
     press("b")
     press("]")
     press("Space")
-    with bench.page.expect_response("**/patches"):
+    with bench.page.expect_response("**/patches", timeout=FIRST_CUT_MS):
         press("p")
     expect(bench.page.get_by_text("Cutting…")).to_be_hidden()
     press("3")

@@ -58,8 +58,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
   ): Promise<DraftSession<L>> {
     const draft = await parts.openDraft(keeper.lease.id, baseRevision);
     const session = new DraftSession(parts, draft, keeper);
-    if (draft.n_strokes > 0) await session.takeUp();
-    else await session.sender.adopt([]);
+    await session.takeUp();
     await session.right.ask();
     session.right.role.subscribe(() => void session.roleChanged());
     if (session.canEdit) session.sender.resume();
@@ -124,7 +123,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
 
   private async takeUp(): Promise<void> {
     const { signal } = new AbortController();
-    await this.sender.adopt(await this.parts.transport.strokes(this.draft.id, -1, signal));
+    await this.sender.adopt(() => this.parts.transport.strokes(this.draft.id, -1, signal));
   }
 
   private async roleChanged(): Promise<void> {
@@ -133,7 +132,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
       return;
     }
     // the tab that edited may have kept strokes that never came through the channel
-    await this.sender.adopt(this.sender.strokes.slice(0, this.sender.nOnRecord));
+    await this.sender.adopt(async () => this.sender.strokes.slice(0, this.sender.nOnRecord));
     this.listener?.onReplaced();
     this.sender.resume();
     await this.sender.refresh();

@@ -24,7 +24,7 @@ async function sendLeftoversOf(parts: SenderParts, draft: DraftIdentity): Promis
     const found = await parts.transport.draft(draft.draftId, signal);
     if (draftIdentity(found).key !== draft.key) return; // another workspace's, served here before: it may be again
     const sender = new StrokeSender(parts, draft);
-    await sender.adopt(await parts.transport.strokes(draft.draftId, -1, signal));
+    await sender.adopt(() => parts.transport.strokes(draft.draftId, -1, signal));
     await sender.flush();
     const { kind } = sender.state.get();
     if (kind === "conflict") await sender.takeTheirs();

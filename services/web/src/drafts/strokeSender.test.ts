@@ -19,7 +19,7 @@ beforeEach(() => {
 /** A tab that has just been opened, as after a reload. */
 async function opened(): Promise<StrokeSender> {
   const sender = new StrokeSender({ transport: service, outbox, clock }, draftIdentity(service.record));
-  await sender.adopt([...service.log]);
+  await sender.adopt(async () => [...service.log]);
   sender.resume();
   await settled();
   return sender;
@@ -109,6 +109,18 @@ describe("failures", () => {
     sender.resume();
     await settled();
     expect(service.log).toHaveLength(1);
+  });
+
+  it("misses nothing that another sender brings to the service while the log is taken up", async () => {
+    const identity = draftIdentity(service.record);
+    await outbox.add(identity, stroke(0));
+    const sender = new StrokeSender({ transport: service, outbox, clock }, identity);
+    await sender.adopt(async () => {
+      await opened(); // and sends what was kept
+      return [...service.log];
+    });
+    expect(ids(sender.strokes)).toEqual(["stroke 0"]);
+    expect([ids(service.log), sender.state.get().kind]).toEqual([["stroke 0"], "saved"]);
   });
 
   it("survives a reload in the middle of sending", async () => {

@@ -68,9 +68,14 @@ export class StrokeSender {
     return this.log.slice(this.nRecorded);
   }
 
-  /** Takes up the log on record, with what the outbox kept behind it. Sends nothing until `resume`. */
-  async adopt(recorded: readonly StrokeJson[]): Promise<void> {
+  /**
+   * Takes up the log on record, with what the outbox kept behind it. Sends nothing until `resume`.
+   *
+   * read : the log on record. It is read after the outbox: what another sender brings to the service meanwhile is in one of both.
+   */
+  async adopt(read: () => Promise<readonly StrokeJson[]>): Promise<void> {
     const kept = await this.parts.outbox.pending(this.draft.key).catch(() => []);
+    const recorded = await read();
     const known = new Set(kept.map((stroke) => stroke.id));
     const unsent = [...kept, ...this.pending.filter((stroke) => !known.has(stroke.id))];
     const { log, strays } = chained(recorded, unsent);
