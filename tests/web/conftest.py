@@ -61,7 +61,7 @@ PATIENCE_MS = 30_000
 expect.set_options(timeout=PATIENCE_MS)
 
 
-# Until Playwright ends, its event loop runs in this thread, where other modules' tests run theirs: so not of the session.
+# Until Playwright ends, its event loop runs in this thread, where other modules' tests run theirs: not of the session.
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
     if not (STATIC / "index.html").is_file():
