@@ -2,7 +2,6 @@
 
 import logging
 import os
-import threading
 from types import TracebackType
 from typing import Self
 
@@ -10,6 +9,7 @@ from partwise.errors import StoreError
 from partwise.store.catalog import JobCatalog
 from partwise.store.records import WorkerUsage
 from partwise.workspace.disk import free_bytes
+from partwise_cli.jobs.repeated import Repeated
 from partwise_workers.events import ActorMemory, RunEvent
 from partwise_workers.sentinel import resident_bytes
 
@@ -18,30 +18,28 @@ logger = logging.getLogger(__name__)
 EVERY_S = 10.0
 
 
-class Presence:
+class Presence(Repeated):
     """Of one worker while the block lasts, from a thread of its own. array_url : of the workspace's array store."""
 
     def __init__(self, catalog: JobCatalog, owner: str, array_url: str, every_s: float = EVERY_S) -> None:
+        super().__init__(f"presence of {owner}", every_s)
         self._catalog = catalog
         self._owner = owner
         self._array_url = array_url
-        self._every_s = every_s
         self._actors = ActorMemory(0, 0)
-        self._has_ended = threading.Event()
-        self._thread: threading.Thread | None = None
 
     def __enter__(self) -> Self:
-        self._has_ended.clear()
-        self._thread = threading.Thread(target=self._go_on, name=f"presence of {self._owner}", daemon=True)
-        self._thread.start()
-        return self
+        self.act()
+        return super().__enter__()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._has_ended.set()
-        if self._thread is not None:
-            self._thread.join()
+        super().__exit__(kind, error, trace)
+        try:
+            self._catalog.forget_worker(self._owner)
+        except StoreError as failure:  # it is forgotten in a day
+            logger.warning("that a worker has ended is not on record: %s", failure)
 
     def on_event(self, event: RunEvent, /) -> None:
         """Implements `OnEvent`: what the processes that compute take goes out with the next sign."""
@@ -55,16 +53,7 @@ class Presence:
             resident_bytes(os.getpid()), actors.n_actors, actors.resident_bytes, free_bytes(self._array_url)
         )
 
-    def _go_on(self) -> None:
-        try:
-            self._tell()
-            while not self._has_ended.wait(self._every_s):
-                self._tell()
-            self._catalog.forget_worker(self._owner)
-        except StoreError as error:  # only its end: it is forgotten in a day
-            logger.warning("that a worker has ended is not on record: %s", error)
-
-    def _tell(self) -> None:
+    def act(self) -> None:
         try:
             self._catalog.note_worker(self._owner, self.usage())
         except StoreError as error:

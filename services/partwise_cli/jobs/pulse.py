@@ -4,22 +4,20 @@ What works on the job tells its progress as often as it likes, and asks whether 
 """
 
 import logging
-import threading
 import time
 from collections.abc import Callable
-from types import TracebackType
-from typing import Self
 
 from partwise.config import JobsConfig
 from partwise.errors import ConflictError, StoreError
 from partwise.store.catalog import JobCatalog
 from partwise.store.records import Job, Progress
+from partwise_cli.jobs.repeated import Repeated
 from partwise_cli.jobs.stopping import JobStoppedError, StopReason
 
 logger = logging.getLogger(__name__)
 
 
-class Pulse:
+class Pulse(Repeated):
     """Of one job while the block lasts."""
 
     def __init__(
@@ -30,6 +28,7 @@ class Pulse:
         config: JobsConfig,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
+        super().__init__(f"pulse of job {job.id}", config.pulse_s)
         self._catalog = catalog
         self._job_id = job.id
         self._owner = owner
@@ -38,18 +37,6 @@ class Pulse:
         self._heard_at = clock()
         self._progress: Progress | None = None
         self._why: tuple[StopReason, str] | None = None
-        self._has_ended = threading.Event()
-        self._thread = threading.Thread(target=self._go_on, name=f"pulse of job {job.id}", daemon=True)
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._has_ended.set()
-        self._thread.join()
 
     def tell(self, progress: Progress) -> None:
         """How far the job is; the last one told goes out with the next sign of life."""
@@ -65,11 +52,9 @@ class Pulse:
         if self._why is not None:
             raise JobStoppedError(*self._why)
 
-    def _go_on(self) -> None:
-        while not self._has_ended.wait(self._config.pulse_s):
+    def act(self) -> None:
+        if not self.is_stopped:
             self.give()
-            if self._why is not None:
-                return
 
     def give(self) -> None:
         """One sign of life. Where the catalog cannot be reached for long, the job counts as lost, as it does there."""
