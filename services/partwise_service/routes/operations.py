@@ -1,16 +1,17 @@
 """/collections/{collection_id}/ops, /rounds, /ops/people: how a collection is doing."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Annotated
 
 from fastapi import APIRouter, Query
 
 from partwise.store.catalog import Catalog
-from partwise.store.records import Job, JobState, SeenWorker, StageCount
+from partwise.store.records import Job, JobKind, JobState, SeenWorker, StageCount
 from partwise.store.reviews import FOR_REVIEWERS
 from partwise.workspace.disk import free_bytes
-from partwise.workspace.segmentations import DESCRIBE, EVALUATE, REFINE
+from partwise.workspace.segmentations import DESCRIBE, EVALUATE, PICTURE, REFINE, REMESH
 from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import Workspace
 from partwise_service.answering import AnswerRoute
@@ -35,6 +36,12 @@ from partwise_service.schemas.operations import (
 MAX_WORKERS = 100
 WINDOW = timedelta(minutes=15)
 SEEN_WITHIN = timedelta(minutes=1)
+COUNTED_STAGES: Mapping[JobKind, tuple[str, ...]] = {
+    JobKind.PREPROCESS: (REMESH, DESCRIBE, PICTURE),
+    JobKind.REFINE: (REFINE,),
+}
+"""What jobs do again after a change of settings. Reading a file has none; evaluations are counted by their model."""
+
 router = APIRouter(route_class=AnswerRoute, tags=["operations"])
 
 
@@ -94,16 +101,39 @@ def _measured(workspace: Workspace, collection_id: int) -> OpsOut:
 
 
 def _stages(catalog: Catalog, collection_id: int, n_shapes: int, now: datetime) -> list[StageFigures]:
-    counts = {each.stage: each for each in catalog.stage_counts(collection_id)}
+    counts = _present_counts(catalog, collection_id)
     paces = catalog.stage_paces(collection_id, now - WINDOW)
+    running = catalog.jobs(collection_id, state=JobState.RUNNING, limit=MAX_WORKERS)
     made = []
     for each in sorted(counts.values(), key=lambda each: _position(each.stage)):
-        remaining = max(0, _n_reaching(each.stage, counts, n_shapes) - each.n_done - each.n_failed)
+        n_reaching = _n_reaching(each.stage, counts, n_shapes)
+        remaining = max(0, n_reaching - each.n_done - each.n_failed)
+        if each.stage in paces:
+            remaining = max(remaining, _n_redone(each.stage, running))
+        done = min(each.n_done, max(0, n_reaching - each.n_failed - remaining))
         per_min = paces.get(each.stage, 0) / (WINDOW.total_seconds() / 60)
         eta_s = 0.0 if not remaining else (60 * remaining / per_min if per_min else None)
-        figures = {"done": each.n_done, "failed": each.n_failed, "remaining": remaining}
+        figures = {"done": done, "failed": each.n_failed, "remaining": remaining}
         made.append(StageFigures(stage=each.stage, **figures, per_min=per_min, eta_s=eta_s))
     return made
+
+
+def _present_counts(catalog: Catalog, collection_id: int) -> dict[str, StageCount]:
+    """How far each stage is. What an older model predicted is there until the newest has, but it is not done."""
+    counts = {each.stage: each for each in catalog.stage_counts(collection_id)}
+    model = catalog.latest_model(collection_id)
+    by_newest = {} if model is None else catalog.stages_of_model(collection_id, model.version)
+    of_models = {stage: counts[stage] for stage in (EVALUATE, REFINE) if stage in counts}
+    return counts | {stage: replace(each, n_done=by_newest.get(stage, 0)) for stage, each in of_models.items()}
+
+
+def _n_redone(stage: str, running: Sequence[Job]) -> int:
+    """How many shapes a job at this stage has yet to finish: where settings changed, it does again what is on record.
+
+    Those jobs count beforehand the shapes that need any of their stages.
+    """
+    totals = [job.progress for job in running if stage in COUNTED_STAGES.get(job.kind, ())]
+    return sum(max(0, (each.n_total or 0) - each.n_done - each.n_failed) for each in totals)
 
 
 def _n_reaching(stage: str, counts: Mapping[str, StageCount], n_shapes: int) -> int:

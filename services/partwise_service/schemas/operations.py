@@ -9,6 +9,8 @@ from partwise_service.schemas.base import Answer
 class StageFigures(Answer):
     """done, failed : shapes with a present result, and shapes given up. remaining : shapes that wait for the stage.
 
+    What an older model predicted is no present result, nor is what a running job does again after changed settings.
+
     per_min : done a minute, over `window_min`. eta_s : seconds until none remains at that pace; null while it is 0.
     """
 

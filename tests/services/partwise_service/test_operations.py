@@ -91,6 +91,35 @@ def test_what_a_stage_gave_up_waits_for_none_after_it(workspace, mugs, ops) -> N
     assert waiting == {"mesh": 1, "describe": 1, "evaluate": 0, "refine": 0}
 
 
+def test_what_an_older_model_predicted_waits_for_the_newest(workspace, mugs, clock, ops) -> None:
+    second = save_model(workspace, workspace.catalog.get_collection("mugs"))
+    assert [_counts(ops(), stage) for stage in ("evaluate", "refine")] == [(0, 3), (0, 3)]
+    probabilities = {mugs.ids["a.off"]: np.tile([0.5, 0.5], (mugs.meshes["a.off"].n_faces, 1))}
+    publish_evaluation(workspace, second, (1, 2), probabilities)
+    clock.now_s += 60
+    assert [_counts(ops(), stage) for stage in ("evaluate", "refine")] == [(1, 2), (0, 3)]
+
+
+def test_what_changed_settings_have_done_again_waits(workspace, mugs, ops, monkeypatch) -> None:
+    monkeypatch.setattr(operations, "WINDOW", timedelta(days=1))  # the shapes were made when the tests began
+    job = workspace.catalog.enqueue_job(mugs.collection_id, JobKind.PREPROCESS)
+    workspace.catalog.claim_job("node-7")
+    workspace.catalog.heartbeat_job(job.id, "node-7", Progress(1, 0, 3))
+    assert [_counts(ops(), stage) for stage in ("mesh", "describe", "refine")] == [(3, 0), (1, 2), (3, 0)]
+
+
+def test_a_job_that_has_counted_nothing_yet_does_nothing_again(workspace, mugs, ops, monkeypatch) -> None:
+    monkeypatch.setattr(operations, "WINDOW", timedelta(days=1))
+    workspace.catalog.enqueue_job(mugs.collection_id, JobKind.REFINE)
+    workspace.catalog.claim_job("node-7")
+    assert _counts(ops(), "refine") == (3, 0)
+
+
+def _counts(shown: dict, stage: str) -> tuple[int, int]:
+    (found,) = [each for each in shown["stages"] if each["stage"] == stage]
+    return found["done"], found["remaining"]
+
+
 def test_leases_are_counted(annotator, workspace, mugs, ops) -> None:
     annotator.post("/queue/claim", json={"collection_id": mugs.collection_id})
     annotator.post("/queue/claim", json={"collection_id": mugs.collection_id, "is_prefetch": True})

@@ -16,6 +16,10 @@ class FigureCatalog(Protocol):
         """How many shapes' latest score of this name is of each model version."""
         ...
 
+    def stages_of_model(self, collection_id: int, model_version: int) -> Mapping[str, int]:
+        """How many shapes each stage is done for with that model, on their present mesh; none where none is."""
+        ...
+
     def block_totals(self) -> Sequence[BlockTotal]:
         """Blocks on record, by kind."""
         ...

@@ -14,7 +14,7 @@ from partwise.store.records import (
     RunStatus,
 )
 from partwise.store.sql.collections import schema_version
-from partwise.store.sql.state import is_failed_run
+from partwise.store.sql.state import is_current_run, is_failed_run
 
 
 def stage_paces(connection: Connection, collection_id: int, since: datetime) -> dict[str, int]:
@@ -26,6 +26,23 @@ def stage_paces(connection: Connection, collection_id: int, since: datetime) -> 
         select(runs.stage, func.count().label("n_done"))
         .join_from(t.stage_run, t.shape)
         .where(runs.id > last_older, runs.status == RunStatus.DONE.value, t.shape.c.collection_id == collection_id)
+        .group_by(runs.stage)
+    )
+    return {row.stage: row.n_done for row in connection.execute(query)}
+
+
+def stages_of_model(connection: Connection, collection_id: int, model_version: int) -> dict[str, int]:
+    schema_version(connection, collection_id)
+    runs = t.stage_run.c
+    query = (
+        select(runs.stage, func.count().label("n_done"))
+        .join_from(t.stage_run, t.shape)
+        .where(
+            is_current_run(),
+            t.shape.c.collection_id == collection_id,
+            runs.summary["model_version"].as_integer() == model_version,
+            runs.summary["mesh_hash"].as_string() == t.shape.c.mesh_hash,
+        )
         .group_by(runs.stage)
     )
     return {row.stage: row.n_done for row in connection.execute(query)}

@@ -18,6 +18,10 @@ class SqlFigureCatalog(SqlBase):
         with reading(self._engine) as connection:
             return figures.scored_by(connection, collection_id, score_name)
 
+    def stages_of_model(self, collection_id: int, model_version: int) -> Mapping[str, int]:
+        with reading(self._engine) as connection:
+            return figures.stages_of_model(connection, collection_id, model_version)
+
     def block_totals(self) -> Sequence[r.BlockTotal]:
         with reading(self._engine) as connection:
             return figures.block_totals(connection)

@@ -15,6 +15,7 @@ from partwise.store.records import (
     NewFailure,
     NewRevision,
     NewScore,
+    NewStageRun,
     RecheckResult,
     RevisionKind,
 )
@@ -25,6 +26,7 @@ from partwise.testing.catalog.samples import (
     label,
     mesh_hash,
     publish,
+    publish_mesh,
     ready_shapes,
     save_model,
 )
@@ -47,6 +49,20 @@ class FigureConformance:
         _, others = add_collection(catalog, 1, "tables")
         publish(catalog, others, "mesh")
         assert catalog.stage_paces(collection.id, datetime.now(UTC) - HOUR) == {}
+
+    def test_stages_count_for_the_model_and_mesh_they_were_done_with(self, catalog: Catalog) -> None:
+        collection, ids = ready_shapes(catalog, 3)
+        old, new = ({"model_version": version} for version in (1, 2))
+        summaries = [old, new, new]
+        runs = [
+            NewStageRun(shape_id, "evaluate", "k1", None, summary={**summary, "mesh_hash": mesh_hash(shape_id)})
+            for shape_id, summary in zip(ids, summaries, strict=True)
+        ]
+        catalog.record_done([*runs, NewStageRun(ids[1], "refine", "k1", None, summary=runs[1].summary)])
+        publish_mesh(catalog, ids[2], version=2)
+        assert catalog.stages_of_model(collection.id, 2) == {"evaluate": 1, "refine": 1}
+        assert catalog.stages_of_model(collection.id, 1) == {"evaluate": 1}
+        assert catalog.stages_of_model(collection.id, 3) == {}
 
     def test_failures_are_counted_by_kind(self, catalog: Catalog) -> None:
         collection, ids = add_collection(catalog, 3)
