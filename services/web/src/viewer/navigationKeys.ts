@@ -1,12 +1,12 @@
 /** Moves a view's camera by the keys, while the view has the focus. */
-import type { ShapeView } from "./shapeView";
+import type { GesturedView } from "./gesturedView";
 
 const TURN = Math.PI / 24;
 const STEP = 0.06;
 const NEARER = 0.85;
 
 /** Arrows turn, with Shift they move; + and − zoom; Home frames. */
-const ACTIONS: Readonly<Record<string, (view: ShapeView, isShift: boolean) => void>> = {
+const ACTIONS: Readonly<Record<string, (view: GesturedView, isShift: boolean) => void>> = {
   ArrowLeft: (view, isShift) => (isShift ? view.move(-STEP, 0) : view.turn(-TURN, 0)),
   ArrowRight: (view, isShift) => (isShift ? view.move(STEP, 0) : view.turn(TURN, 0)),
   ArrowUp: (view, isShift) => (isShift ? view.move(0, STEP) : view.turn(0, -TURN)),
@@ -18,9 +18,9 @@ const ACTIONS: Readonly<Record<string, (view: ShapeView, isShift: boolean) => vo
 };
 
 export class NavigationKeys {
-  readonly #view: ShapeView;
+  readonly #view: GesturedView;
 
-  constructor(view: ShapeView) {
+  constructor(view: GesturedView) {
     this.#view = view;
     view.element.addEventListener("keydown", this.#pressed);
   }

@@ -5,7 +5,7 @@
  * button, or if the tool is `navigate`, it turns. The middle button, or Shift, moves. Two fingers move and zoom.
  */
 
-import type { ShapeView } from "./shapeView";
+import type { GesturedView } from "./gesturedView";
 import { Strokes } from "./strokeGesture";
 
 const TURN_PER_PIXEL = 0.008;
@@ -15,14 +15,14 @@ const PIXELS_PER_LINE = 18;
 type Point = { x: number; y: number };
 
 export class PointerGestures {
-  readonly #view: ShapeView;
+  readonly #view: GesturedView;
   readonly #pressed = new Map<number, Point>();
   readonly #strokes: Strokes;
   readonly #listening = new AbortController();
   #isMoving = false;
   #isHovering = false;
 
-  constructor(view: ShapeView) {
+  constructor(view: GesturedView) {
     this.#view = view;
     this.#strokes = new Strokes(view);
     const { element } = view;

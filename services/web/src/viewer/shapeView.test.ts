@@ -1,10 +1,11 @@
 // @vitest-environment jsdom
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { SurfaceMesh } from "../geometry/surfaceMesh";
+import type { ViewListener } from "./gesturedView";
 import { meshOf } from "./preparedMesh";
 import { builtTree, readTree } from "./searchTree";
 import { type Hit, ShapeModel } from "./shapeModel";
-import { ShapeView, type ViewListener } from "./shapeView";
+import { ShapeView } from "./shapeView";
 import { preparedSurface } from "./surfacePreparation";
 
 const SIZE = 200;

@@ -1,5 +1,6 @@
 /** One viewport: a camera on a shape, moved by pointer and keys, and the gestures of the tool in hand. */
 import { Box3, Matrix4, PerspectiveCamera, type Quaternion, Ray, Vector3, type WebGLRenderer } from "three";
+import type { GesturedView, ViewListener } from "./gesturedView";
 import { NavigationKeys } from "./navigationKeys";
 import { PointerGestures } from "./pointerGestures";
 import {
@@ -29,24 +30,9 @@ export interface StageOfView {
   removed(view: ShapeView): void;
 }
 
-/** What a view tells whoever works with it. */
-export interface ViewListener {
-  /** The pointer is over the surface, or (null) no longer. */
-  hover?(hit: Hit | null, event: PointerEvent): void;
-  strokeStart?(hit: Hit, event: PointerEvent): void;
-  /** Further hits of a drag, in order; a face is told once in a row. */
-  strokeMove?(hits: readonly Hit[], event: PointerEvent): void;
-  strokeEnd?(): void;
-  /** The drag was given up (Escape, a second finger): nothing of it counts. */
-  strokeCancel?(): void;
-  cameraChange?(pose: Pose): void;
-}
-
-export class ShapeView {
+export class ShapeView implements GesturedView {
   readonly element: HTMLElement;
-  /** `stroke`: pressing on the surface draws. `navigate`: every gesture moves the camera. */
-  tool: "navigate" | "stroke" = "navigate";
-  /** Least distance between hits of a drag, as a share of the diagonal: a quarter of the brush's radius, say. */
+  tool: GesturedView["tool"] = "navigate";
   strokeSpacing = 0;
   readonly #stage: StageOfView;
   readonly #upright: Quaternion;
@@ -126,12 +112,10 @@ export class ShapeView {
     this.pose = turned(this.#pose, right, down);
   }
 
-  /** By heights of the view. */
   move(right: number, up: number): void {
     this.pose = moved(this.#pose, right, up);
   }
 
-  /** Nearer (factor < 1) or farther, about a point of the page or the middle. */
   zoom(factor: number, clientX?: number, clientY?: number): void {
     const box = this.element.getBoundingClientRect();
     const right = clientX === undefined ? 0 : (clientX - box.left - box.width / 2) / box.height;
@@ -139,7 +123,6 @@ export class ShapeView {
     this.pose = zoomed(this.#pose, factor, right, up);
   }
 
-  /** What is at a point of the page; null beside the shape. */
   pick(clientX: number, clientY: number): Hit | null {
     const box = this.element.getBoundingClientRect();
     const x = ((clientX - box.left) / box.width) * 2 - 1;
@@ -164,7 +147,6 @@ export class ShapeView {
     return () => this.#listeners.delete(listener);
   }
 
-  /** For the parts of a view: passes something on to all listeners. */
   tell(what: (listener: ViewListener) => void, inputAt?: number): void {
     if (inputAt !== undefined) this.#stage.inputAt(inputAt);
     for (const listener of this.#listeners) what(listener);

@@ -1,16 +1,16 @@
 /** A stroke while it is drawn: the faces under the pointer's path, also between the places that the browser reports. */
+import type { GesturedView } from "./gesturedView";
 import type { Hit } from "./shapeModel";
-import type { ShapeView } from "./shapeView";
 
 /** Pixels between picks along a drag: below the size of faces that a hand can aim at. */
 const STEP = 4;
 
 export class Strokes {
-  readonly #view: ShapeView;
+  readonly #view: GesturedView;
   #at: { x: number; y: number } | null = null;
   #last: Hit | null = null;
 
-  constructor(view: ShapeView) {
+  constructor(view: GesturedView) {
     this.#view = view;
   }
 

@@ -3,8 +3,9 @@ import { type Brush, clickedFaces, cosineOfLimit, Drag } from "../../../geometry
 import { regionOf } from "../../../geometry/region";
 import { runsOf } from "../../../labels/faceRuns";
 import type { Operation, Paint } from "../../../labels/operations";
+import type { ViewListener } from "../../../viewer/gesturedView";
 import type { Hit, ShapeModel } from "../../../viewer/shapeModel";
-import type { ShapeView, ViewListener } from "../../../viewer/shapeView";
+import type { ShapeView } from "../../../viewer/shapeView";
 import type { OpenShape } from "../shape/openShape";
 import type { PatchMap } from "./patchMap";
 import type { ToolSettings, ToolShelf } from "./toolSettings";
