@@ -118,6 +118,15 @@ describe("a lease", () => {
     expect(told).toEqual([false, false, null]);
   });
 
+  it("tells that work has begun though an older answer was still under way", async () => {
+    const keeper = new LeaseKeeper(transport, clock, renewed());
+    const asking = keeper.renew();
+    await keeper.renew(false);
+    await asking;
+    await clock.advance(LEASE_MS / 2);
+    expect(told).toEqual([null, false, null]);
+  });
+
   it("is let go when stopped, even while an answer is under way", async () => {
     const keeper = new LeaseKeeper(transport, clock, renewed());
     const asking = keeper.renew();

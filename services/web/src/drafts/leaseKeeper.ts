@@ -51,7 +51,7 @@ export class LeaseKeeper<L extends LeaseRecord> {
   private expiresAt: number;
   private cancel: (() => void) | null = null;
   private isStopped = false;
-  private isAsking = false;
+  private asking: Promise<void> | null = null;
   /** What is to be told with the next renewal that gets through. */
   private wish: boolean | null = null;
 
@@ -70,18 +70,14 @@ export class LeaseKeeper<L extends LeaseRecord> {
     return this.held;
   }
 
-  /** Renews now: after sleep, or when the network is back. */
+  /** Renews now: after sleep, or when the network is back. Ends once the service was told, or was not reached. */
   async renew(isPrefetched: boolean | null = null): Promise<void> {
     this.wish = isPrefetched ?? this.wish;
-    if (this.isStopped || this.isAsking) return;
-    this.cancel?.();
-    this.backoff.stop();
-    this.isAsking = true;
-    try {
-      await this.ask();
-    } finally {
-      this.isAsking = false;
-    }
+    if (this.isStopped) return;
+    this.asking ??= this.askUntilTold().finally(() => {
+      this.asking = null;
+    });
+    await this.asking;
   }
 
   /** After it was ended: claims the shape again, because the person wants it. Rejects if it is not to be had. */
@@ -95,9 +91,25 @@ export class LeaseKeeper<L extends LeaseRecord> {
     this.backoff.stop();
   }
 
-  private async ask(): Promise<void> {
+  /** Once more where another wish came up while the service answered. */
+  private async askUntilTold(): Promise<void> {
+    let told: boolean | null;
+    do {
+      this.cancel?.();
+      this.backoff.stop();
+      told = this.wish;
+      await this.ask(told);
+    } while (this.isHeld && this.wish !== null && this.wish !== told);
+  }
+
+  private get isHeld(): boolean {
+    return !this.isStopped && this.state.get().kind === "held";
+  }
+
+  private async ask(wish: boolean | null): Promise<void> {
     try {
-      this.hold(await this.transport.renew(this.held.id, this.wish));
+      this.hold(await this.transport.renew(this.held.id, wish));
+      if (this.wish === wish) this.wish = null;
     } catch (error) {
       const failure = failureOf(error);
       const how = endOf(error);
@@ -120,6 +132,7 @@ export class LeaseKeeper<L extends LeaseRecord> {
     const renewed = await this.transport.reclaim(this.held.collection_id, this.held.shape_id);
     if (this.isStopped) return;
     this.hold(renewed);
+    this.wish = null; // who claims by name works on it
     this.onReclaimed(renewed.lease);
   }
 
@@ -127,7 +140,6 @@ export class LeaseKeeper<L extends LeaseRecord> {
     if (this.isStopped) return;
     const lastsMs = Date.parse(lease.expires_at) - at;
     this.held = lease;
-    this.wish = null;
     this.expiresAt = this.clock.now() + lastsMs;
     this.backoff.reset();
     this.state.set({ kind: "held" });
