@@ -73,7 +73,7 @@ class Editor:
         ------
         ParameterError : a face outside the mesh, an author or time that is none.
         LabelError : a part that is not in the schema, a delta that does not fit.
-        ConflictError : nothing to undo or redo, or a stroke id that was used before.
+        ConflictError : a stroke id that was used before.
         """
         if any(stroke.id == stroke_id for stroke in self._strokes):
             raise ConflictError(f"stroke {stroke_id} was already performed; give each stroke an id of its own")

@@ -1,7 +1,8 @@
 """Replay: operations applied to labels, one by one, with undo. Live editing and replaying a log are the same code.
 
 An edit that changes no face is no step: it can be recorded, but undo passes it over and redo stays as it was. At most
-`UNDO_LIMIT` steps can be taken back; that is part of what a log means, so every program must hold the same.
+`UNDO_LIMIT` steps can be taken back; undo and redo without a step change nothing. That is part of what a log means, so
+every program must hold the same.
 """
 
 from collections import deque
@@ -11,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Int, Integer, UInt16
 
-from partwise.errors import ConflictError, LabelError, PartwiseError
+from partwise.errors import LabelError, PartwiseError
 from partwise.labels.encoding import labels_sha256
 from partwise.labels.operations import Assign, Clear, Delta, Edit, Operation, Paint, Redo, SegmentWide, Undo
 from partwise.labels.schema import MAX_PART_ID
@@ -108,7 +109,6 @@ class Replay:
         ------
         ParameterError : a face outside the mesh.
         LabelError : a part that may not be given, a delta that does not fit.
-        ConflictError : nothing to undo or redo.
         """
         match operation:
             case Undo():
@@ -124,7 +124,7 @@ class Replay:
 
     def _step_back(self) -> Change:
         if not self._done:
-            raise ConflictError(f"undo needs a step but none is left (at most {UNDO_LIMIT} are kept); nothing to undo")
+            return self._nothing()
         change = self._done.pop()
         self._undone.append(change)
         self._labels[change.faces] = change.before
@@ -132,11 +132,15 @@ class Replay:
 
     def _step_forward(self) -> Change:
         if not self._undone:
-            raise ConflictError("redo needs a step that was taken back and not replaced but has none; nothing to redo")
+            return self._nothing()
         change = self._undone.pop()
         self._done.append(change)
         self._labels[change.faces] = change.after
         return change
+
+    def _nothing(self) -> Change:
+        none = self._labels[:0].copy()
+        return Change(np.empty(0, dtype=np.int64), none, none)
 
     def _change(self, edit: Edit) -> Change:
         """What the edit would change; nothing is changed yet."""

@@ -1,9 +1,10 @@
-"""Writes `v0.json` and `v1.json` beside it: `python tests/golden/strokes/make.py`. See README.md.
+"""Writes the golden logs beside it: `python tests/golden/strokes/make.py`. See README.md.
 
 Once a version has been released its file is never written again: only the file of the newest version may change.
 """
 
 import json
+from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,7 @@ def bent_sheet() -> TriMesh:
 
 
 class PlainLabels:
-    """Labels as a list, with every earlier list kept."""
+    """Labels as a list, with every earlier list kept. Undo and redo change nothing where none is left."""
 
     def __init__(self, mesh: TriMesh) -> None:
         self._vertices, self._faces = mesh.vertices.tolist(), mesh.faces.tolist()
@@ -48,16 +49,19 @@ class PlainLabels:
 
     def do(self, operation: Operation) -> list[int]:
         if isinstance(operation, Undo):
-            self._future.append(self.now)
-            self.now = self._past.pop()
+            self._step(self._past, self._future)
         elif isinstance(operation, Redo):
-            self._past.append(self.now)
-            self.now = self._future.pop()
+            self._step(self._future, self._past)
         else:
             self._past.append(self.now)
             self._future.clear()
             self.now = self._after(operation)
         return self.now
+
+    def _step(self, there: list[list[int]], here: list[list[int]]) -> None:
+        if there:
+            here.append(self.now)
+            self.now = there.pop()
 
     def _after(self, operation: Operation) -> list[int]:
         match operation:
@@ -105,11 +109,25 @@ def version_1() -> tuple[dict[str, Any], list[list[int]]]:
         Paint((47,), Brush(1.0), 2, only_over=0),
     ]
     after_each += [plain.do(operation) for operation in then]
+    return _log_of(mesh, [*first, *then]), after_each
+
+
+def version_1_without_steps() -> tuple[dict[str, Any], list[list[int]]]:
+    """Undo and redo where there is nothing to take back or to do again, and the labels after each stroke."""
+    mesh = bent_sheet()
+    first, second = Assign(((8, 4), (20, 1)), 1), Paint((40,), Brush(0.25), 2)
+    operations = [Undo(), Redo(), first, Redo(), Undo(), Undo(), Redo(), Redo(), second, Redo(), Undo(), Undo(), Undo()]
+    plain = PlainLabels(mesh)
+    return _log_of(mesh, operations), [plain.do(operation) for operation in operations]
+
+
+def _log_of(mesh: TriMesh, operations: Sequence[Operation]) -> dict[str, Any]:
     log = StrokeLog.starting_from(mesh.content_hash(), np.zeros(mesh.n_faces, dtype=np.uint16))
-    for n, operation in enumerate([*first, *then]):
+    for n, operation in enumerate(operations):
         at = _START + timedelta(seconds=3.5 * n)
         log = log.with_stroke(Stroke(UUID(int=n + 1, version=4), n, None, 7, at, operation))
-    return json.loads(log_to_json(log)), after_each
+    document: dict[str, Any] = json.loads(log_to_json(log))
+    return document
 
 
 def version_0() -> tuple[dict[str, Any], list[list[int]]]:
@@ -160,3 +178,4 @@ def write(name: str, log: dict[str, Any], after_each: list[list[int]]) -> None:
 if __name__ == "__main__":
     write("v0", *version_0())
     write("v1", *version_1())
+    write("v1_without_steps", *version_1_without_steps())

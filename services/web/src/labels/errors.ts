@@ -3,11 +3,6 @@ export class LabelError extends Error {
   override readonly name = "LabelError";
 }
 
-/** Undo or redo without a step to take. */
-export class NoStepError extends Error {
-  override readonly name = "NoStepError";
-}
-
 /** Strokes or logs that are not as docs/segmentation.md says, or are of a newer version. */
 export class StrokeFormatError extends Error {
   override readonly name = "StrokeFormatError";

@@ -2,12 +2,13 @@
  * Labels of one shape under edit, with undo: operations mean what `partwise.labels.replay` makes of them.
  *
  * An edit that changes no face is no step: undo passes it over and redo stays as it was. At most `UNDO_LIMIT` steps can
- * be taken back; that is part of what a log means. What is refused changes nothing.
+ * be taken back; undo and redo without a step change nothing. That is part of what a log means. What is refused changes
+ * nothing either.
  */
 import { type Brush, paintedFaces } from "../geometry/paint";
 import { regionOf } from "../geometry/region";
 import type { SurfaceMesh } from "../geometry/surfaceMesh";
-import { LabelError, NoStepError } from "./errors";
+import { LabelError } from "./errors";
 import { facesOfRuns, withRuns } from "./faceRuns";
 import {
   type Assign,
@@ -28,6 +29,8 @@ export interface Change {
   readonly before: Uint16Array;
   readonly after: Uint16Array;
 }
+
+const NOTHING: Change = { faces: new Uint32Array(), before: new Uint16Array(), after: new Uint16Array() };
 
 export class LabelEditor {
   readonly mesh: SurfaceMesh;
@@ -73,8 +76,7 @@ export class LabelEditor {
   /**
    * Does one operation and says what changed; what changed nothing must not be recorded as a stroke.
    *
-   * Throws RangeError (a face outside the mesh), LabelError (a part that may not be given, a delta that does not fit),
-   * NoStepError (nothing to undo or redo).
+   * Throws RangeError (a face outside the mesh), LabelError (a part that may not be given, a delta that does not fit).
    */
   apply(operation: Operation): Change {
     if (operation.kind === "undo") return this.#stepBack();
@@ -110,7 +112,7 @@ export class LabelEditor {
 
   #stepBack(): Change {
     const change = this.#done.pop();
-    if (change === undefined) throw new NoStepError(`nothing to undo (at most ${UNDO_LIMIT} steps are kept)`);
+    if (change === undefined) return NOTHING;
     this.#undone.push(change);
     this.#write(change.faces, change.before);
     return { faces: change.faces, before: change.after, after: change.before };
@@ -118,7 +120,7 @@ export class LabelEditor {
 
   #stepForward(): Change {
     const change = this.#undone.pop();
-    if (change === undefined) throw new NoStepError("nothing to redo");
+    if (change === undefined) return NOTHING;
     this.#done.push(change);
     this.#write(change.faces, change.after);
     return change;
