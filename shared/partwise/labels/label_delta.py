@@ -70,10 +70,7 @@ class LabelDelta:
         ------
         LabelError : labels of another mesh, a damaged payload, or a result that is not what was recorded.
         """
-        if len(labels) != self.n_faces:
-            raise LabelError(
-                f"a label delta for {self.n_faces} faces must not be applied to {len(labels)}; another mesh?"
-            )
+        self._check_size(len(labels))
         first, count, label = self._runs()
         faces = np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())
         after = labels.copy()
@@ -85,6 +82,15 @@ class LabelDelta:
                 "it is damaged, or was made for other labels"
             )
         return after
+
+    def check_on_mesh(self, n_faces: int) -> None:
+        """Raises LabelError for another number of faces or a damaged payload. Labels that it fits are not asked for."""
+        self._check_size(n_faces)
+        self._runs()
+
+    def _check_size(self, n_faces: int) -> None:
+        if n_faces != self.n_faces:
+            raise LabelError(f"a label delta for {self.n_faces} faces must not be applied to {n_faces}; another mesh?")
 
     def _runs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         n_bytes = _RUN_BYTES * self.n_runs

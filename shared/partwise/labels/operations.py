@@ -2,7 +2,7 @@
 
 Paint, assign, segment-wide and clear are recomputed wherever they are replayed. What a solver made is kept as a delta.
 Undo and redo are operations too. Faces and part ids are checked here for what can be known without the mesh and the
-schema; `partwise.labels.replay` checks the rest.
+schema, and by `check_on_mesh` for what the number of faces tells; `partwise.labels.replay` checks the rest.
 """
 
 import math
@@ -17,6 +17,7 @@ from partwise.errors import LabelError, ParameterError
 from partwise.labels.face_runs import runs_of
 from partwise.labels.label_delta import LabelDelta
 from partwise.labels.schema import MAX_PART_ID
+from partwise.segmentation.face_graph import check_face
 from partwise.segmentation.paint import Brush
 
 Scalar = str | int | float | bool | None
@@ -164,7 +165,7 @@ class Clear:
 
 @dataclass(frozen=True, slots=True)
 class Undo:
-    """Takes back the last step that is not taken back."""
+    """Takes back the last step that is not taken back, if there is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +177,25 @@ Edit = Paint | Assign | SegmentWide | Delta | Clear
 """What may change labels and then is one step for undo."""
 
 Operation = Edit | Undo | Redo
+
+
+def check_on_mesh(operation: Operation, n_faces: int) -> None:
+    """What a log must not hold, as it could never be replayed: it is noticed without the mesh, by its number of faces.
+
+    Raises
+    ------
+    ParameterError : a face outside the mesh.
+    LabelError : a delta of another mesh, or a damaged one.
+    """
+    match operation:
+        case Paint(seeds=seeds):
+            check_face(max(seeds), n_faces)
+        case Assign():
+            check_face(operation.end - 1, n_faces)
+        case SegmentWide(seed=seed):
+            check_face(seed, n_faces)
+        case Delta(delta=delta):
+            delta.check_on_mesh(n_faces)
 
 
 def _check_faces(least: int) -> None:

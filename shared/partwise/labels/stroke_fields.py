@@ -13,6 +13,7 @@ class Fields:
     """A JSON object called `what` in messages. Every reader raises FileFormatError on a missing or mistyped key.
 
     `true` is no number, though Python thinks so, and 3.0 is no whole number, though JavaScript thinks so: it writes 3.
+    Text is what every database keeps and every program reads back: Unicode without half characters and the character 0.
     """
 
     def __init__(self, document: Mapping[str, Any], what: str) -> None:
@@ -22,7 +23,7 @@ class Fields:
 
     def text(self, key: str) -> str:
         value = self._value(key)
-        return value if isinstance(value, str) else self._refuse(key, "text", value)
+        return value if _is_text(value) else self._refuse(key, "text", value)
 
     def whole(self, key: str) -> int:
         value = self._value(key)
@@ -54,7 +55,8 @@ class Fields:
 
     def mapping(self, key: str) -> dict[str, Any]:
         value = self._value(key)
-        return value if isinstance(value, dict) else self._refuse(key, "an object", value)
+        is_good = isinstance(value, dict) and all(map(_is_text, value)) and all(map(_is_told, value.values()))
+        return value if is_good else self._refuse(key, "an object of text and numbers", value)
 
     def objects(self, key: str) -> list[dict[str, Any]]:
         value = self._value(key)
@@ -80,6 +82,19 @@ class Fields:
         shown = repr(value)
         shown = shown if len(shown) <= 60 else f"{shown[:57]}…"
         raise FileFormatError(f"{key!r} of {self._what} must be {rule} but is {shown}; correct whatever wrote it")
+
+
+def _is_text(value: Any) -> bool:
+    if not isinstance(value, str) or "\0" in value:
+        return False
+    return value.isascii() or not any("\ud800" <= character <= "\udfff" for character in value)
+
+
+def _is_told(value: Any) -> bool:
+    """Whether every program reads the value as it was written, if it is of a kind that they read at all."""
+    if isinstance(value, str):
+        return _is_text(value)
+    return not isinstance(value, int) or abs(value) <= _EXACT
 
 
 def _is_whole(value: Any) -> bool:

@@ -15,6 +15,9 @@ from partwise.errors import ConflictError, LabelError, ParameterError
 from partwise.labels.encoding import labels_sha256
 from partwise.labels.operations import Operation
 
+MAX_ROW_ID = 2**31 - 1
+"""Of what a catalog numbers: strokes of a draft, revisions, people."""
+
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
@@ -28,7 +31,8 @@ class Stroke:
 
     Raises
     ------
-    ParameterError : a negative sequence, an author or revision below 1, a time without zone or not in UTC.
+    ParameterError : a negative sequence, an author or revision below 1, a number larger than a catalog can hold, a time
+        without zone or not in UTC.
     """
 
     id: UUID
@@ -39,12 +43,14 @@ class Stroke:
     operation: Operation
 
     def __post_init__(self) -> None:
-        if self.sequence < 0:
-            raise ParameterError(f"a stroke's sequence must be 0 or more but is {self.sequence}; count from 0")
-        if self.author_id < 1:
-            raise ParameterError(f"a stroke's author must be a person's id, 1 or more, but is {self.author_id}")
-        if self.base_revision is not None and self.base_revision < 1:
-            raise ParameterError(f"a base revision must be 1 or more, or nothing, but is {self.base_revision}")
+        if not 0 <= self.sequence < MAX_ROW_ID:  # the number of strokes must fit, too
+            raise ParameterError(
+                f"a stroke's sequence must be 0 to {MAX_ROW_ID - 1} but is {self.sequence}; count from 0"
+            )
+        if not 1 <= self.author_id <= MAX_ROW_ID:
+            raise ParameterError(f"a stroke's author must be a person's id, 1 to {MAX_ROW_ID}, but is {self.author_id}")
+        if self.base_revision is not None and not 1 <= self.base_revision <= MAX_ROW_ID:
+            raise ParameterError(f"a base revision must be 1 to {MAX_ROW_ID}, or nothing, but is {self.base_revision}")
         if self.at.utcoffset() != timedelta(0):
             raise ParameterError(
                 f"a stroke's time must be in UTC with its zone but is {self.at.isoformat()}; convert it"

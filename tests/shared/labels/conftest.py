@@ -25,9 +25,8 @@ def _operations(labels: np.ndarray) -> st.SearchStrategy[Operation]:
     brush = st.builds(Brush, st.floats(0.01, 1.0), st.none() | st.floats(-1.0, 1.0))
     paint = st.builds(Paint, st.lists(face, min_size=1, max_size=3).map(tuple), brush, _LABELS, st.none() | _LABELS)
     assign = st.builds(Assign.to_faces, st.lists(face, min_size=1, max_size=5), _LABELS)
-    parameters = st.dictionaries(
-        st.text(max_size=4), st.none() | st.booleans() | st.floats(-9, 9) | st.text(max_size=4)
-    )
+    text = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4)
+    parameters = st.dictionaries(text, st.none() | st.booleans() | st.floats(-9, 9) | text)
 
     def delta(source: DeltaSource, after: list[int], named: dict[str, float]) -> Operation:
         return Delta.of(source, LabelDelta.between(labels, np.array(after, np.uint16)), named)

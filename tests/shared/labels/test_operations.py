@@ -10,7 +10,18 @@ from hypothesis import strategies as st
 
 from partwise.errors import LabelError, ParameterError
 from partwise.labels.label_delta import LabelDelta
-from partwise.labels.operations import Assign, Delta, DeltaSource, Operation, Paint, SegmentWide
+from partwise.labels.operations import (
+    Assign,
+    Clear,
+    Delta,
+    DeltaSource,
+    Operation,
+    Paint,
+    Redo,
+    SegmentWide,
+    Undo,
+    check_on_mesh,
+)
 from partwise.segmentation.paint import Brush
 
 _BRUSH = Brush(0.1)
@@ -94,3 +105,36 @@ def test_operations_compare_by_value() -> None:
     for one, other in pairs:
         assert one == other
         assert hash(one) == hash(other)
+
+
+_ON_THREE_FACES = [
+    Paint((2, 0), _BRUSH, 1),
+    Assign(((0, 1), (2, 1)), 1),
+    SegmentWide(2, 1),
+    Delta(DeltaSource.PATCHES, _DELTA),
+    Clear(),
+    Undo(),
+    Redo(),
+]
+
+
+@pytest.mark.parametrize("operation", _ON_THREE_FACES)
+def test_faces_of_the_mesh_may_be_named(operation: Operation) -> None:
+    check_on_mesh(operation, 3)
+
+
+@pytest.mark.parametrize("operation", _ON_THREE_FACES[:3])
+def test_a_face_outside_the_mesh_is_refused(operation: Operation) -> None:
+    with pytest.raises(ParameterError, match="a face must be 0 to 1 but is 2"):
+        check_on_mesh(operation, 2)
+
+
+def test_a_delta_of_another_mesh_is_refused() -> None:
+    with pytest.raises(LabelError, match="for 3 faces must not be applied to 2"):
+        check_on_mesh(Delta(DeltaSource.PATCHES, _DELTA), 2)
+
+
+def test_a_damaged_delta_is_refused() -> None:
+    damaged = Delta(DeltaSource.PATCHES, LabelDelta(3, 1, "AAAA", _DELTA.sha256))
+    with pytest.raises(LabelError, match="fetch it again"):
+        check_on_mesh(damaged, 3)

@@ -31,7 +31,11 @@ _DELTA = Delta.of(DeltaSource.START_FROM, LabelDelta.between(_BLANK, _BLANK + np
 
 
 def _golden(version: int) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads((_GOLDEN / f"v{version}.json").read_text())
+    return _read(_GOLDEN / f"v{version}.json")
+
+
+def _read(path: Path) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(path.read_text())
     return document
 
 
@@ -45,9 +49,13 @@ def _shuffled(value: Any, order: random.Random) -> Any:
     return value
 
 
-@pytest.mark.parametrize("version", range(STROKE_VERSION + 1))
-def test_logs_of_every_version_replay(version: int) -> None:
-    golden = _golden(version)
+def test_there_is_a_log_of_every_version() -> None:
+    assert {f"v{version}" for version in range(STROKE_VERSION + 1)} <= {path.stem for path in _GOLDEN.glob("*.json")}
+
+
+@pytest.mark.parametrize("path", sorted(_GOLDEN.glob("*.json")), ids=lambda path: path.stem)
+def test_golden_logs_replay(path: Path) -> None:
+    golden = _read(path)
     mesh = TriMesh(np.array(golden["vertices"]), np.array(golden["faces"]))
     log = log_from_json(json.dumps(golden["log"]))
     for n_strokes, labels in enumerate(golden["labels_after_each_stroke"], start=1):
@@ -135,6 +143,11 @@ def test_a_time_elsewhere_is_the_same_moment(make_stroke: MakeStroke) -> None:
     assert stroke_from_document({**document, "at": "2026-03-01T11:30:00+02:00"}) == stroke_from_document(document)
 
 
+def test_text_of_every_script_is_kept(make_stroke: MakeStroke) -> None:
+    delta = Delta.of(_DELTA.source, _DELTA.delta, {"模型": "Ω 🪑"})
+    assert stroke_from_document(stroke_to_document(make_stroke(0, delta))).operation == delta
+
+
 def test_a_whole_number_is_a_good_radius(make_stroke: MakeStroke) -> None:
     read = stroke_from_document({**stroke_to_document(make_stroke(0, _PAINT)), "radius": 1})
     assert read.operation == Paint((2, 0), Brush(1.0, 0.5), 3)
@@ -169,6 +182,12 @@ def test_a_whole_number_is_a_good_radius(make_stroke: MakeStroke) -> None:
         (_ASSIGN, {"runs": [7]}, "list of pairs"),
         (_DELTA, {"source": "magic"}, "source must be one of patches, .* but is 'magic'"),
         (_DELTA, {"parameters": []}, "must be an object"),
+        (_DELTA, {"parameters": {"model": "\ud800"}}, "must be an object of text and numbers"),
+        (_DELTA, {"parameters": {"\udfff": 1}}, "must be an object of text and numbers"),
+        (_DELTA, {"parameters": {"model": "\0"}}, "must be an object of text and numbers"),
+        (_DELTA, {"parameters": {"model": 2**53 + 1}}, "must be an object of text and numbers"),
+        (_DELTA, {"payload": "\ud800"}, "'payload' of a stroke must be text"),
+        (_DELTA, {"payload": "\0"}, "'payload' of a stroke must be text"),
     ],
 )
 def test_a_malformed_stroke_is_refused(

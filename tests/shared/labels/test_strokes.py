@@ -28,9 +28,12 @@ _WHO: dict[str, Any] = {"author_id": 7, "at": datetime(2026, 3, 1, tzinfo=UTC)}
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"sequence": -1}, "sequence must be 0 or more"),
+        ({"sequence": -1}, "sequence must be 0 to 2147483646"),
+        ({"sequence": 2**31 - 1}, "sequence must be 0 to 2147483646"),
         ({"author_id": 0}, "author must be a person's id"),
-        ({"base_revision": 0}, "base revision must be 1 or more"),
+        ({"author_id": 2**31}, "author must be a person's id"),
+        ({"base_revision": 0}, "base revision must be 1 to 2147483647"),
+        ({"base_revision": 10**30}, "base revision must be 1 to 2147483647"),
         ({"at": datetime(2026, 3, 1)}, "time must be in UTC"),
         ({"at": datetime(2026, 3, 1, tzinfo=timezone(timedelta(hours=1)))}, "time must be in UTC"),
     ],
