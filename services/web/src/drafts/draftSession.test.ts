@@ -106,6 +106,33 @@ describe("two tabs on one shape", () => {
     expect(ids(service.log)).toEqual(["stroke 0", "stroke 1"]);
   });
 
+  it("watching, has no conflict of its own once the other has settled one", async () => {
+    const [first, second] = [await tab(), await tab()];
+    draw(first);
+    await settled();
+    service.log.push(stroke(1, "theirs 1"));
+    draw(first, "mine 1");
+    await settled();
+    expect(first.session.sender.state.get().kind).toBe("conflict");
+    await first.session.sender.takeTheirs();
+    await settled();
+    expect(second.session.sender.state.get().kind).toBe("saved");
+    expect(ids(second.shown)).toEqual(["stroke 0", "theirs 1"]);
+  });
+
+  it("one that could not open the draft keeps no channel to the others", async () => {
+    const { tabs } = parts;
+    let nChannels = 0;
+    const channel = (name: string) => {
+      const opened = tabs.channel(name);
+      nChannels++;
+      return Object.assign(opened, { close: () => nChannels-- });
+    };
+    service.faults = ["cut"];
+    await expect(tab({ ...parts, tabs: { ...tabs, channel } })).rejects.toThrow("cannot be reached");
+    expect(nChannels).toBe(0);
+  });
+
   it("learns that the other confirmed the shape", async () => {
     const [first, second] = [await tab(), await tab()];
     draw(first);

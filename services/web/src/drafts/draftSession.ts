@@ -31,6 +31,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
   /** Another tab, or another computer, confirmed this draft. */
   readonly isConfirmedElsewhere = new Observable(false);
   listener: SessionListener | null = null;
+  private readonly stopHearing: () => void;
 
   private constructor(
     private readonly parts: SessionParts,
@@ -47,7 +48,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
     this.right.onMessage = (message) => this.receive(message);
     this.right.beforeHandOver = () => this.sender.pause();
     keeper.onReclaimed = (lease) => void this.reopen(lease.id);
-    keeper.state.subscribe(() => this.leaseChanged(keeper.state.get()));
+    this.stopHearing = keeper.state.subscribe(() => this.leaseChanged(keeper.state.get()));
   }
 
   /** The draft of the keeper's lease with all its strokes. It edits, or watches where another tab edits. */
@@ -58,8 +59,13 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
   ): Promise<DraftSession<L>> {
     const draft = await parts.openDraft(keeper.lease.id, baseRevision);
     const session = new DraftSession(parts, draft, keeper);
-    await session.takeUp();
-    await session.right.ask();
+    try {
+      await session.takeUp();
+      await session.right.ask();
+    } catch (error) {
+      await session.close(); // else it would keep the right to edit from whoever tries again
+      throw error;
+    }
     session.right.role.subscribe(() => void session.roleChanged());
     if (session.canEdit) session.sender.resume();
     return session;
@@ -103,10 +109,11 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
     void this.keeper.renew();
   }
 
-  /** Leaves the draft as it is. Its strokes are on record or in the outbox. */
+  /** Leaves the draft as it is, and the lease. Its strokes are on record or in the outbox. */
   async close(): Promise<void> {
     this.listener = null;
-    this.keeper.stop();
+    this.stopHearing();
+    this.keeper.onReclaimed = () => {};
     await this.sender.pause();
     this.right.close();
   }
@@ -131,8 +138,9 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
       await this.sender.pause();
       return;
     }
-    // the tab that edited may have kept strokes that never came through the channel
-    await this.sender.adopt(async () => this.sender.strokes.slice(0, this.sender.nOnRecord));
+    // the tab that edited may have kept strokes that never came through the channel, and told of some that it could not keep
+    const recorded = async () => this.sender.strokes.slice(0, this.sender.nOnRecord);
+    await this.sender.adopt(recorded, { keepsHeard: true });
     this.listener?.onReplaced();
     this.sender.resume();
     await this.sender.refresh();
@@ -143,7 +151,8 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
     else if (message.kind === "stroke" && this.sender.follow(message.stroke)) {
       this.listener?.onFollowed(message.stroke);
     } else if (!this.canEdit) {
-      void this.takeUp().then(() => this.listener?.onReplaced());
+      const told = this.takeUp().then(() => this.listener?.onReplaced());
+      told.catch(() => {}); // the record cannot be read now: the next message tries again
     }
   }
 }

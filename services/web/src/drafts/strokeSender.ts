@@ -69,15 +69,17 @@ export class StrokeSender {
   }
 
   /**
-   * Takes up the log on record, with what the outbox kept behind it. Sends nothing until `resume`.
+   * Takes up the log on record, with what the outbox kept behind it, and what only this tab has. Sends nothing until `resume`.
    *
    * read : the log on record. It is read after the outbox: what another sender brings to the service meanwhile is in one of both.
+   * keepsHeard : also strokes that another tab told of, which it may have given up since.
    */
-  async adopt(read: () => Promise<readonly StrokeJson[]>): Promise<void> {
+  async adopt(read: () => Promise<readonly StrokeJson[]>, { keepsHeard = false } = {}): Promise<void> {
     const kept = await this.parts.outbox.pending(this.draft.key).catch(() => []);
     const recorded = await read();
     const known = new Set(kept.map((stroke) => stroke.id));
-    const unsent = [...kept, ...this.pending.filter((stroke) => !known.has(stroke.id))];
+    const own = this.pending.filter(({ id }) => keepsHeard || this.unkept.has(id) || this.storing.has(id));
+    const unsent = [...kept, ...own.filter((stroke) => !known.has(stroke.id))];
     const { log, strays } = chained(recorded, unsent);
     await this.setAside(recorded.length, strays, "two-windows");
     this.log = log;

@@ -121,6 +121,7 @@ export class HeldShape {
     const loading = this.load(opening, performance.now());
     try {
       await this.takenUp();
+      if (this.isClosed) return;
       this.drafting ??= loading.facts.then((facts) => this.drafted(facts));
       const [model, { draft, base }, start] = await Promise.all([
         loading.model,
@@ -209,11 +210,13 @@ export class HeldShape {
 
   private async drafted(facts: ShapeFacts): Promise<Drafted> {
     const goesOn = this.isNamed || this.reworkNote.get() !== null;
+    let draft: Draft | null = null;
     try {
-      const draft = await DraftSession.open(this.parts, this.keeper, goesOn ? facts.headRevision : null);
+      draft = await DraftSession.open(this.parts, this.keeper, goesOn ? facts.headRevision : null);
       const { id, base_revision } = draft.draft;
       return { draft, base: base_revision === null ? null : await fetchDraftBase(id) };
     } catch (error) {
+      await draft?.close(); // else it would keep the right to edit from whoever tries again
       this.drafting = null;
       throw error;
     }

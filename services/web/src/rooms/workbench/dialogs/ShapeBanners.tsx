@@ -39,8 +39,10 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
       )}
       {lease.kind === "ended" && !isLossTold && <Ended held={held} how={lease.how} leave={leave} />}
       {role === "watching" && <Watching open={open} />}
-      {save.kind === "conflict" && <ConflictBar open={open} divergence={save.divergence} />}
-      {(save.kind === "closed" || save.kind === "refused") && (
+      {role === "editing" && save.kind === "conflict" && (
+        <ConflictBar open={open} divergence={save.divergence} />
+      )}
+      {role === "editing" && (save.kind === "closed" || save.kind === "refused") && (
         <Withdrawn open={open} title={titleOfRefusal(save.kind, save.nQueued)} why={save.why} leave={leave} />
       )}
       <SetAsideBar open={open} />
