@@ -43,8 +43,15 @@ export class PointerGestures {
     return this.#pressed.size > 0;
   }
 
-  remove(): void {
+  /** Gives up a drag that is under way; what its pointer does until it is lifted is none of it. */
+  giveUpStroke(): void {
+    if (!this.#strokes.isDrawing) return;
+    this.#pressed.clear();
     this.#strokes.cancel();
+  }
+
+  remove(): void {
+    this.giveUpStroke();
     this.#listening.abort();
   }
 
@@ -54,6 +61,7 @@ export class PointerGestures {
     this.#pressed.set(event.pointerId, pointOf(event));
     if (this.#pressed.size > 1) {
       this.#strokes.cancel();
+      this.#stopHovering(event);
       return;
     }
     this.#isMoving = event.button === 1 || event.shiftKey;
@@ -66,7 +74,10 @@ export class PointerGestures {
   readonly #move = (event: PointerEvent) => {
     const before = this.#pressed.get(event.pointerId);
     if (before === undefined) return this.#hover(event);
-    if (this.#strokes.isDrawing) return this.#strokes.move(event);
+    if (this.#strokes.isDrawing) {
+      this.#hover(event);
+      return this.#strokes.move(event);
+    }
     const now = pointOf(event);
     if (this.#pressed.size === 2) this.#pinch(event.pointerId, before, now);
     else if (this.#isMoving) this.#shift(before, now);
@@ -79,12 +90,14 @@ export class PointerGestures {
   readonly #up = (event: PointerEvent) => {
     this.#pressed.delete(event.pointerId);
     this.#strokes.end();
-    if (event.pointerType !== "touch") this.#hover(event);
+    if (event.pointerType === "touch") this.#stopHovering(event);
+    else this.#hover(event);
   };
 
   readonly #cancel = (event: PointerEvent) => {
     this.#pressed.delete(event.pointerId);
     this.#strokes.cancel();
+    this.#stopHovering(event);
   };
 
   readonly #leave = (event: PointerEvent) => this.#stopHovering(event);
@@ -92,7 +105,7 @@ export class PointerGestures {
   readonly #key = (event: KeyboardEvent) => {
     if (event.key !== "Escape" || !this.#strokes.isDrawing) return;
     event.stopPropagation();
-    this.#strokes.cancel();
+    this.giveUpStroke();
   };
 
   readonly #wheel = (event: WheelEvent) => {

@@ -118,6 +118,16 @@ describe("a stroke", () => {
     expect(told).toEqual(["start", "cancel"]);
   });
 
+  it("is given up when another shape comes, and what its pointer does then neither draws nor turns", () => {
+    pointer("pointerdown", INSIDE, INSIDE);
+    view.show(model.alike());
+    const { pose } = view;
+    pointer("pointermove", 120, 120);
+    pointer("pointerup", 120, 120);
+    expect(told.filter((what) => what !== "hover")).toEqual(["start", "cancel"]);
+    expect(view.pose).toBe(pose);
+  });
+
   it.each([
     ["beside the shape", BESIDE, {}],
     ["with the right button", INSIDE, { button: 2 }],
@@ -216,6 +226,17 @@ describe("hovering", () => {
     pointer("pointermove", BESIDE, BESIDE);
     pointer("pointerleave", BESIDE, BESIDE);
     expect(told).toEqual(["hover", "left"]);
+  });
+
+  it.each([
+    ["is lifted", "pointerup", 1],
+    ["is taken away by the browser", "pointercancel", 1],
+    ["is joined by a second one", "pointerdown", 2],
+  ])("ends when a finger that drew %s, as none hovers", (_, type, pointerId) => {
+    pointer("pointerdown", INSIDE, INSIDE, { pointerType: "touch" });
+    pointer("pointermove", INSIDE + 20, INSIDE, { pointerType: "touch" });
+    pointer(type, INSIDE + 20, INSIDE, { pointerType: "touch", pointerId });
+    expect(told.filter((what) => what === "hover" || what === "left")).toEqual(["hover", "left"]);
   });
 });
 

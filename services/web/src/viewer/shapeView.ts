@@ -85,9 +85,10 @@ export class ShapeView implements GesturedView {
     this.tell((listener) => listener.cameraChange?.(pose));
   }
 
-  /** Shows a shape, or none. Another shape than before is framed, unless `keepsPose`. */
+  /** Shows a shape, or none. Another shape than before is framed, unless `keepsPose`; a drag on the one before is given up. */
   show(model: ShapeModel | null, { keepsPose = false } = {}): void {
     if (model === this.#model) return;
+    this.#gestures.giveUpStroke();
     this.#model?.changed.delete(this.#redraw);
     model?.changed.add(this.#redraw);
     this.#model = model;

@@ -29,9 +29,8 @@ export class Strokes {
     const hits = (places.length > 0 ? places : [event]).flatMap((place) =>
       this.#hitsTo(place.clientX, place.clientY),
     );
-    const latest = this.#view.pick(event.clientX, event.clientY);
-    this.#view.tell((listener) => listener.hover?.(latest, event), event.timeStamp);
-    if (hits.length > 0) this.#view.tell((listener) => listener.strokeMove?.(hits, event));
+    if (hits.length === 0) return;
+    this.#view.tell((listener) => listener.strokeMove?.(hits, event), event.timeStamp);
   }
 
   end(): void {
