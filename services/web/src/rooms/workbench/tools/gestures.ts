@@ -2,7 +2,7 @@
 import { type Brush, clickedFaces, cosineOfLimit, Drag } from "../../../geometry/paint";
 import { regionOf } from "../../../geometry/region";
 import { runsOf } from "../../../labels/faceRuns";
-import type { Operation, Paint } from "../../../labels/operations";
+import type { Operation } from "../../../labels/operations";
 import type { ViewListener } from "../../../viewer/gesturedView";
 import type { Hit, ShapeModel } from "../../../viewer/shapeModel";
 import type { ShapeView } from "../../../viewer/shapeView";
@@ -23,11 +23,20 @@ export interface GestureContext {
   onEngage(): void;
 }
 
+/** A drag on the surface of one shape, with the settings of the moment it began: keys may change them while it goes on. */
+interface SurfaceDrag {
+  readonly open: OpenShape;
+  /** Faces that a further hit adds to it, ascending. */
+  take(face: number): Uint32Array;
+  /** What it comes to. */
+  operation(): Operation;
+}
+
 const SPACING = 0.25;
+const NO_FACES = new Uint32Array(0);
 
 export class ToolGestures implements ViewListener {
-  private drag: { readonly faces: Drag; readonly stroke: Omit<Paint, "seeds"> } | null = null;
-  private taken: Set<number> | null = null;
+  private drag: SurfaceDrag | null = null;
   private region: { readonly faces: Uint32Array; readonly version: number } | null = null;
   /** Where the pointer rests, so that keys change what is shown there at once. */
   private pointer: { readonly hit: Hit; readonly on: ShapeModel } | null = null;
@@ -44,10 +53,11 @@ export class ToolGestures implements ViewListener {
     this.view.tool = tool === "turn" || !this.context.isDrawnOn() ? "navigate" : "stroke";
     this.view.strokeSpacing = tool === "paint" ? radius * SPACING : 0;
     this.region = null;
+    if (this.pointer !== null && this.pointer.on !== model) this.leave(this.pointer.on);
     if (tool !== "paint" || this.view.tool === "navigate") model?.setBrush(null);
-    if (this.isStroking) return;
+    if (this.drag !== null) return;
     model?.setPreview(null);
-    if (this.pointer !== null && this.pointer.on === model) this.hover(this.pointer.hit);
+    if (this.pointer !== null) this.hover(this.pointer.hit);
   }
 
   hover(hit: Hit | null): void {
@@ -56,7 +66,7 @@ export class ToolGestures implements ViewListener {
     this.pointer = hit === null ? null : { hit, on: open.model };
     const { tool, radius } = this.settings;
     if (tool === "paint") open.model.setBrush(hit === null ? null : { point: hit.point, radius });
-    if (!this.isStroking) open.model.setPreview(this.hovered(open, hit), this.colour());
+    if (this.drag === null) open.model.setPreview(this.hovered(open, hit), this.colour());
   }
 
   strokeStart(hit: Hit): void {
@@ -64,8 +74,8 @@ export class ToolGestures implements ViewListener {
     const open = this.context.open();
     if (open === null || !open.canEdit) return;
     const { tool } = this.settings;
-    if (tool === "paint") this.startPaint(open, hit);
-    else if (tool === "patches") this.takePatches(open, [hit]);
+    if (tool === "paint") this.begin(this.painting(open), hit);
+    else if (tool === "patches") this.begin(this.takingPatches(open), hit);
     else if (tool === "segment")
       this.done(open, { kind: "segment_wide", seed: hit.face, label: this.settings.part });
     else if (tool === "pick")
@@ -73,28 +83,19 @@ export class ToolGestures implements ViewListener {
   }
 
   strokeMove(hits: readonly Hit[]): void {
-    const open = this.context.open();
-    if (open === null) return;
-    if (this.drag !== null) for (const { face } of hits) open.model.addPreview(this.drag.faces.click(face));
-    else if (this.taken !== null) this.takePatches(open, hits);
+    const drag = this.goingOn();
+    if (drag !== null) for (const { face } of hits) drag.open.model.addPreview(drag.take(face));
   }
 
   strokeEnd(): void {
-    const open = this.context.open();
-    const { drag, taken } = this;
+    const drag = this.goingOn();
     this.drag = null;
-    this.taken = null;
-    if (open === null) return;
-    open.model.setPreview(null);
-    if (drag !== null) this.done(open, { ...drag.stroke, seeds: drag.faces.seeds });
-    const faces = taken === null ? [] : [...taken].sort((a, b) => a - b);
-    if (faces.length > 0) this.done(open, { kind: "assign", runs: runsOf(faces), label: this.settings.part });
+    if (drag !== null) this.done(drag.open, drag.operation());
   }
 
   strokeCancel(): void {
+    this.drag?.open.model.setPreview(null);
     this.drag = null;
-    this.taken = null;
-    this.context.open()?.model.setPreview(null);
   }
 
   /** One press in the middle of the view: for the keyboard. Says why it cannot be, or null. */
@@ -107,10 +108,6 @@ export class ToolGestures implements ViewListener {
     return null;
   }
 
-  private get isStroking(): boolean {
-    return this.drag !== null || this.taken !== null;
-  }
-
   private get settings(): ToolSettings {
     return this.context.shelf.settings.get();
   }
@@ -119,13 +116,41 @@ export class ToolGestures implements ViewListener {
     return this.context.colourOf(this.settings.part);
   }
 
-  /** Settings are those of the moment: keys may change them while the drag goes on. */
-  private startPaint(open: OpenShape, hit: Hit): void {
+  private begin(drag: SurfaceDrag | null, hit: Hit): void {
+    this.drag = drag;
+    drag?.open.model.setPreview(drag.take(hit.face), this.colour());
+  }
+
+  /** The drag in hand; it ends with the shape that it began on, and with the right to change that. */
+  private goingOn(): SurfaceDrag | null {
+    const open = this.drag?.open;
+    if (open !== this.context.open() || !open?.canEdit) this.strokeCancel();
+    return this.drag;
+  }
+
+  private painting(open: OpenShape): SurfaceDrag {
     const { part, onlyOver } = this.settings;
     const brush = this.brush();
     const faces = new Drag(open.model.mesh, brush, this.opened(open));
-    this.drag = { faces, stroke: { kind: "paint", ...brush, label: part, only_over: onlyOver } };
-    open.model.setPreview(faces.click(hit.face), this.colour());
+    return {
+      open,
+      take: (face) => faces.click(face),
+      operation: () => ({ kind: "paint", ...brush, label: part, only_over: onlyOver, seeds: faces.seeds }),
+    };
+  }
+
+  private takingPatches(open: OpenShape): SurfaceDrag | null {
+    const patches = this.context.patches();
+    if (patches === null) return null;
+    const { part } = this.settings;
+    const taken = new Set<number>();
+    const take = (face: number) => {
+      if (taken.has(face)) return NO_FACES;
+      const faces = patches.around(face);
+      for (const each of faces) taken.add(each);
+      return faces;
+    };
+    return { open, take, operation: () => ({ kind: "assign", runs: runsOf(taken), label: part }) };
   }
 
   private brush(): Brush {
@@ -137,20 +162,6 @@ export class ToolGestures implements ViewListener {
   private opened({ labels }: OpenShape): ((face: number) => boolean) | undefined {
     const { onlyOver } = this.settings;
     return onlyOver === null ? undefined : (face) => labels[face] === onlyOver;
-  }
-
-  private takePatches(open: OpenShape, hits: readonly Hit[]): void {
-    const patches = this.context.patches();
-    if (patches === null) return;
-    const isFirst = this.taken === null;
-    this.taken ??= new Set();
-    for (const { face } of hits) {
-      if (this.taken.has(face)) continue;
-      const faces = patches.around(face);
-      for (const each of faces) this.taken.add(each);
-      if (!isFirst) open.model.addPreview(faces);
-      else open.model.setPreview(faces, this.colour());
-    }
   }
 
   private hovered(open: OpenShape, hit: Hit | null): Uint32Array | null {
@@ -165,6 +176,13 @@ export class ToolGestures implements ViewListener {
       this.region = { version, faces: regionOf(open.model.mesh.graph, open.labels, hit.face) };
     }
     return this.region?.faces ?? null;
+  }
+
+  /** The pointer was on a shape that is no longer in the view. */
+  private leave(model: ShapeModel): void {
+    this.pointer = null;
+    model.setBrush(null);
+    model.setPreview(null);
   }
 
   private done(open: OpenShape, operation: Operation): void {
