@@ -1,14 +1,16 @@
 """What each kind of job does. `HANDLERS` is the list of them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
 from partwise.errors import NotEnoughDataError
-from partwise.store.records import JobKind, Model, ShapeState
+from partwise.store.records import FirstShape, JobKind, Model
 from partwise.workspace.first_shapes import select_first_shapes
+from partwise.workspace.placed_shapes import PlacedShapes, place_new_shapes, read_placed
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.ranking import make_orderings, refill_queue
 from partwise.workspace.relabel import MoveReport
+from partwise.workspace.segmentations import DESCRIBE
 from partwise.workspace.similarity import most_similar_first
 from partwise_cli.jobs.export import export
 from partwise_cli.jobs.ingest import ingest
@@ -22,7 +24,7 @@ N_CLUSTERS, N_PER_CLUSTER, SEED = 5, 2, 0
 
 
 def preprocess(work: Work) -> Outcome:
-    """Mends and describes what is new; then shapes are chosen to be labelled first, or predicted if a model exists."""
+    """Mends, describes and places what is new. A model, if there is one, then predicts; until then some come first."""
     from partwise_workers.passes import preprocess as run
 
     work.connect()
@@ -31,8 +33,7 @@ def preprocess(work: Work) -> Outcome:
     stages.flush()
     turn.raise_if_over()
     catalog = work.workspace.catalog
-    if catalog.embedding(work.collection.id) is None:
-        _select(work)
+    _embed(work)
     Reranking(work).rank()
     make_orderings(work.workspace, work.collection)
     if catalog.latest_model(work.collection.id) is not None:
@@ -41,14 +42,51 @@ def preprocess(work: Work) -> Outcome:
     return _outcome("preprocessed", result.n_done, result.n_failed, moved)
 
 
-def _select(work: Work) -> None:
-    """Embeds the collection, as soon as there is anything to choose from."""
-    counts = work.workspace.catalog.state_counts(work.collection.id)
-    n_described = sum(n for state, n in counts.items() if state not in (ShapeState.NEW, ShapeState.FAILED))
-    n_clusters = min(N_CLUSTERS, n_described // N_PER_CLUSTER)
-    if n_clusters:
+def _embed(work: Work) -> None:
+    """Embeds the collection as soon as there is anything to choose from, and anew once it has doubled.
+
+    What is described in between is placed in the embedding that there is.
+    """
+    placed = _placed(work)
+    if placed is None or _n_described(work) >= 2 * placed.n_fitted:
         with suppress(NotEnoughDataError):  # shapes that are all alike are as good first as any other
-            select_first_shapes(work.workspace, work.collection, n_clusters, N_PER_CLUSTER, SEED)
+            _select(work, placed)
+            return
+    if placed is not None:
+        place_new_shapes(work.workspace, work.collection)
+
+
+def select(work: Work) -> Outcome:
+    """Embeds the collection anew and chooses the first shapes from it."""
+    firsts = _select(work, _placed(work))
+    Reranking(work).rank()
+    make_orderings(work.workspace, work.collection)
+    return Outcome(f"the map is drawn, and {_shapes(len(firsts))} chosen to be labelled first")
+
+
+def _select(work: Work, before: PlacedShapes | None) -> Sequence[FirstShape]:
+    """As many clusters as before, unless there were too few shapes for more."""
+    n_clusters, n_per_cluster, n_described = N_CLUSTERS, N_PER_CLUSTER, _n_described(work)
+    if before is not None and before.n_fitted >= N_CLUSTERS * N_PER_CLUSTER:
+        n_clusters = before.n_clusters
+        n_per_cluster = max(1, len(work.workspace.catalog.first_shapes(work.collection.id)) // n_clusters)
+    n_clusters = max(1, min(n_clusters, n_described // n_per_cluster))
+
+    def on_progress(run: RunProgress) -> None:
+        work.tell(run)
+        work.pulse.raise_if_stopped()
+
+    return select_first_shapes(work.workspace, work.collection, n_clusters, n_per_cluster, SEED, on_progress)
+
+
+def _placed(work: Work) -> PlacedShapes | None:
+    found = work.workspace.catalog.embedding(work.collection.id)
+    return None if found is None else read_placed(work.workspace, found.key)
+
+
+def _n_described(work: Work) -> int:
+    counts = work.workspace.catalog.stage_counts(work.collection.id)
+    return next((each.n_done for each in counts if each.stage == DESCRIBE), 0)
 
 
 def train(work: Work) -> None:
@@ -126,8 +164,13 @@ def refill(work: Work) -> Outcome:
 
 
 def _outcome(what: str, n_done: int, n_failed: int, more: Mapping[str, int] | None = None) -> Outcome:
-    shapes = "1 shape" if n_done == 1 else f"{n_done:,} shapes"
-    return Outcome(f"{shapes} {what}, {n_failed:,} failed", {"n_done": n_done, "n_failed": n_failed, **(more or {})})
+    return Outcome(
+        f"{_shapes(n_done)} {what}, {n_failed:,} failed", {"n_done": n_done, "n_failed": n_failed, **(more or {})}
+    )
+
+
+def _shapes(n: int) -> str:
+    return "1 shape" if n == 1 else f"{n:,} shapes"
 
 
 HANDLERS: Mapping[JobKind, Handler] = {
@@ -135,6 +178,7 @@ HANDLERS: Mapping[JobKind, Handler] = {
     JobKind.TRAIN: train,
     JobKind.EVALUATE: evaluate,
     JobKind.REFINE: refine,
+    JobKind.SELECT: select,
     JobKind.REFILL: refill,
     JobKind.INGEST: ingest,
     JobKind.EXPORT: export,

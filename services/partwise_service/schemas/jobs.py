@@ -8,7 +8,7 @@ from pydantic import JsonValue
 from partwise.store.records import Job, JobKind, JobState
 from partwise_service.schemas.base import Answer, Request
 
-Kind = Literal[JobKind.PREPROCESS, JobKind.TRAIN, JobKind.EVALUATE, JobKind.REFINE]
+Kind = Literal[JobKind.PREPROCESS, JobKind.TRAIN, JobKind.EVALUATE, JobKind.REFINE, JobKind.SELECT]
 
 
 class NoParameters(Request):

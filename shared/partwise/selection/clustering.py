@@ -78,6 +78,12 @@ def clustered(points: Float[np.ndarray, "n d"], n_clusters: int, rng: np.random.
     return Clustering(centres, cluster_ids)
 
 
+def nearest_centres(points: Float[np.ndarray, "n d"], centres: Float[np.ndarray, "k d"]) -> Int[np.ndarray, " n"]:
+    """The cluster of each point, (n,) int64, by the nearest of the centres."""
+    nearest: Int[np.ndarray, " n"] = cdist(points, centres).argmin(axis=1)
+    return nearest
+
+
 def nearest_to_centres(
     points: Float[np.ndarray, "n d"], ids: Sequence[str], clustering: Clustering, n_per_cluster: int
 ) -> list[FirstShape]:

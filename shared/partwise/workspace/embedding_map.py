@@ -37,7 +37,9 @@ def embedding_key(workspace: Workspace, collection: Collection) -> str:
     """
     found = workspace.catalog.embedding(collection.id)
     if found is None:
-        raise NotFoundError(f"collection {collection.name!r} has no embedding yet; run `partwise select`")
+        raise NotFoundError(
+            f"collection {collection.name!r} has no embedding yet; preprocess shapes, or run `partwise select`"
+        )
     return found.key
 
 

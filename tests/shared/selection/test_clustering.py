@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from partwise.errors import NotEnoughDataError, ParameterError
-from partwise.selection.clustering import FirstShape, first_shapes, typical_shapes
+from partwise.selection.clustering import FirstShape, clustered, first_shapes, nearest_centres, typical_shapes
 
 IDS = [f"shape-{k}" for k in range(60)]
 
@@ -66,6 +66,12 @@ def test_typical_shapes_lie_where_a_cluster_is_dense() -> None:
 def test_a_lone_shape_is_typical_of_itself() -> None:
     points = np.array([[0.0], [0.1], [0.2], [90.0]])
     assert typical_shapes(points, IDS[:4], 2, _rng())[1] == FirstShape("shape-3", 1, 0.0)
+
+
+def test_points_of_a_clustering_are_nearest_to_their_own_centres() -> None:
+    points, _ = _three_blobs()
+    clustering = clustered(points, 3, _rng())
+    np.testing.assert_array_equal(nearest_centres(points, clustering.centres), clustering.cluster_ids)
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,9 @@ from safetensors.numpy import load
 from partwise.errors import NotEnoughDataError
 from partwise.testing.expect import raises
 from partwise.testing.workspaces import ingest, publish_features, publish_meshes
-from partwise.workspace import first_shapes as module
+from partwise.workspace import light_fields
 from partwise.workspace.first_shapes import select_first_shapes
+from partwise.workspace.progress import RunProgress
 
 
 def test_the_selection_is_put_on_record(filled) -> None:
@@ -55,10 +56,20 @@ def test_every_embedded_shape_is_in_a_cluster(filled) -> None:
     assert {first.shape_id: first.cluster for first in firsts}.items() <= clusters.items()
 
 
+def test_what_progress_raises_leaves_all_as_it_was(filled) -> None:
+    def stop(_: RunProgress) -> None:
+        raise KeyboardInterrupt
+
+    filled.described()
+    with pytest.raises(KeyboardInterrupt):
+        select_first_shapes(filled.workspace, filled.collection, 2, 1, seed=0, on_progress=stop)
+    assert filled.workspace.catalog.embedding(filled.collection.id) is None
+
+
 def test_descriptors_are_read_in_batches(filled, monkeypatch: pytest.MonkeyPatch) -> None:
     filled.described()
     whole = _points(filled)
-    monkeypatch.setattr(module, "LIGHT_FIELDS_AT_ONCE", 2)
+    monkeypatch.setattr(light_fields, "AT_ONCE", 2)
     np.testing.assert_allclose(_points(filled), whole, rtol=1e-4, atol=1e-2)  # of distances of some 30,000
 
 

@@ -16,6 +16,7 @@ class JobKind(StrEnum):
     REFINE = "refine"
     EXPORT = "export"
     INGEST = "ingest"
+    SELECT = "select"  # the first shapes, from an embedding that is fitted anew
     REFILL = "refill"  # of the queue, after the number of labels a shape gets was changed
 
 

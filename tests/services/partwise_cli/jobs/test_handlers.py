@@ -1,11 +1,15 @@
 """What each kind of job does beside the passes themselves, which are the workers' and replaced here."""
 
+import numpy as np
 import pytest
 
 from partwise.store.records import EventKind, JobKind, JobState, NewModel
-from partwise.testing.workspaces import save_model
+from partwise.testing.workspaces import ingest, publish_features, publish_meshes, save_model
+from partwise.workspace.first_shapes import select_first_shapes
+from partwise.workspace.placed_shapes import read_placed
 from partwise.workspace.progress import RunProgress
 from partwise.workspace.relabel import MoveReport
+from partwise.workspace.shapes import load_mesh
 from partwise_cli.jobs.handlers import HANDLERS
 from partwise_cli.jobs.stopping import JobStoppedError, StopReason
 from partwise_workers import evaluation, passes, training
@@ -56,6 +60,72 @@ def test_preprocessing_chooses_the_first_shapes_once(do, workspace, collection_i
     workspace.catalog.replace_first_shapes(collection_id, firsts[:1])
     do(JobKind.PREPROCESS)
     assert len(workspace.catalog.first_shapes(collection_id)) == 1
+
+
+@pytest.fixture
+def describe(workspace, collection_id):
+    """So many further shapes, described: `describe(3)`; their ids."""
+    rng = np.random.default_rng(1)
+    first = next(iter(workspace.catalog.shapes(collection_id)))
+    mesh = load_mesh(workspace, workspace.catalog.meshes([first.id])[first.id])
+
+    def describe(n: int) -> list[int]:
+        collection = workspace.catalog.get_collection("mugs")
+        n_before = sum(workspace.catalog.state_counts(collection_id).values())
+        ids = list(ingest(workspace, collection, {f"new{n_before + k}.off": mesh for k in range(n)}).values())
+        publish_meshes(workspace, dict.fromkeys(ids, mesh))
+        publish_features(workspace, ids, rng)
+        return ids
+
+    return describe
+
+
+def _placed(workspace, collection_id: int):
+    return read_placed(workspace, workspace.catalog.embedding(collection_id).key)
+
+
+def test_preprocessing_places_what_came_since_in_the_embedding_that_there_is(
+    do, workspace, collection_id, preprocessing, describe
+) -> None:
+    do(JobKind.PREPROCESS)
+    n_fitted = _placed(workspace, collection_id).n_fitted
+    (new,) = describe(1)
+    do(JobKind.PREPROCESS)
+    placed = _placed(workspace, collection_id)
+    assert (placed.n_fitted, len(placed.shape_ids), placed.shape_ids[-1]) == (n_fitted, n_fitted + 1, new)
+    assert new in workspace.catalog.clusters([new])
+
+
+def test_preprocessing_fits_anew_once_there_are_twice_as_many(
+    do, workspace, collection_id, preprocessing, describe
+) -> None:
+    do(JobKind.PREPROCESS)
+    n_fitted = _placed(workspace, collection_id).n_fitted
+    describe(n_fitted)
+    do(JobKind.PREPROCESS)
+    assert _placed(workspace, collection_id).n_fitted == 2 * n_fitted
+
+
+def test_selecting_fits_anew_with_as_many_clusters_as_before(do, workspace, collection_id, describe) -> None:
+    describe(12)
+    collection = workspace.catalog.get_collection("mugs")
+    select_first_shapes(workspace, collection, 3, 4, seed=0)
+    (new,) = describe(1)
+    ended = do(JobKind.SELECT)
+    assert ended.state is JobState.DONE
+    assert ended.progress.message == "the map is drawn, and 12 shapes chosen to be labelled first"
+    placed = _placed(workspace, collection_id)
+    assert (placed.n_clusters, new in placed.shape_ids) == (3, True)
+
+
+def test_selecting_from_too_few_says_what_is_missing(do, workspace, collection_id) -> None:
+    shape_ids = [shape.id for shape in workspace.catalog.shapes(collection_id)]
+    runs = workspace.catalog.stage_runs(shape_ids, "describe").values()
+    for name in {run.block_name for run in runs}:
+        workspace.catalog.supersede_block(name)
+    ended = do(JobKind.SELECT)
+    assert ended.state is JobState.FAILED
+    assert "needs 2 described ones" in ended.progress.message
 
 
 def test_preprocessing_asks_for_an_evaluation_where_there_is_a_model(

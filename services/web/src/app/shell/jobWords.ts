@@ -22,6 +22,11 @@ export const JOB_WORDS: Readonly<Record<JobKind, { name: string; doing: string; 
   },
   export: { name: "Export", doing: "Exporting", meaning: "Writes labelled shapes as files." },
   ingest: { name: "Add files", doing: "Adding files", meaning: "Reads meshes into the collection." },
+  select: {
+    name: "Draw the map anew",
+    doing: "Drawing the map",
+    meaning: "Compares all shapes anew, and chooses some of each kind to be labelled first.",
+  },
   refill: {
     name: "Refill the queue",
     doing: "Refilling the queue",

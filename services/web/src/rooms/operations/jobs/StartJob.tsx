@@ -9,7 +9,7 @@ import styles from "./StartJob.module.css";
 
 type Kind = Schemas["NewJob"]["kind"];
 
-const KINDS: readonly Kind[] = ["preprocess", "train", "evaluate", "refine"];
+const KINDS: readonly Kind[] = ["preprocess", "train", "evaluate", "refine", "select"];
 
 /** Asks for a job now. Exports have choices, which the settings room offers. */
 export function StartJob({ collectionId }: { collectionId: number }) {
