@@ -1,5 +1,6 @@
 /** Patches of the shape in hand while the tool is, cut anew when their number or method changes. */
 import { useEffect, useState } from "react";
+import type { ShapeModel } from "../../../viewer/shapeModel";
 import type { OpenShape } from "../shape/openShape";
 import { cutPatches } from "../shape/shapeRequests";
 import { PatchMap } from "./patchMap";
@@ -12,7 +13,12 @@ export interface Patches {
   readonly why: string | null;
 }
 
-const NONE: Patches = { map: null, isCutting: false, why: null };
+/** Patches of one shape; those of another do not fit, though it may have as many faces. */
+interface Cut extends Patches {
+  readonly model: ShapeModel | null;
+}
+
+const NONE: Cut = { model: null, map: null, isCutting: false, why: null };
 const SETTLE_MS = 120;
 
 export function usePatches(
@@ -21,27 +27,29 @@ export function usePatches(
   nPatches: number,
   method: PatchMethod,
 ): Patches {
-  const [patches, setPatches] = useState<Patches>(NONE);
+  const [cut, setCut] = useState<Cut>(NONE);
   const shapeId = open?.draft.draft.shape_id ?? null;
   const model = open?.model ?? null;
+  const patches = cut.model === model ? cut : NONE;
 
   useEffect(() => {
     if (model === null || shapeId === null || !isWanted) {
-      setPatches(NONE);
+      setCut(NONE);
       return undefined;
     }
     const request = new AbortController();
-    setPatches(({ map }) => ({
-      map: map?.patchOf.length === model.mesh.nFaces ? map : null,
-      isCutting: true,
-      why: null,
-    }));
+    // the last ones stay meanwhile
+    setCut((last) => ({ model, map: last.model === model ? last.map : null, isCutting: true, why: null }));
     const timer = window.setTimeout(() => {
       cutPatches(shapeId, { n_patches: nPatches, method }, request.signal).then(
-        (patchOf) => setPatches({ map: new PatchMap(patchOf), isCutting: false, why: null }),
+        (patchOf) => {
+          if (request.signal.aborted) return;
+          setCut({ model, map: new PatchMap(patchOf), isCutting: false, why: null });
+        },
         (error: unknown) => {
           if (request.signal.aborted) return;
-          setPatches({
+          setCut({
+            model,
             map: null,
             isCutting: false,
             why: error instanceof Error ? error.message : String(error),
