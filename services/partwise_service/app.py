@@ -17,7 +17,7 @@ from partwise_service.compression import CompressionMiddleware
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
 from partwise_service.openapi import install_openapi
-from partwise_service.ownership import draft_owners
+from partwise_service.ownership import known_drafts
 from partwise_service.page import install_page
 from partwise_service.problems import install_problems
 from partwise_service.remembered import Remembered
@@ -45,6 +45,7 @@ from partwise_service.routes import (
 )
 from partwise_service.schemas.operations import OpsOut
 from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
+from partwise_service.security.at_once import AtOnce
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.service import Service
@@ -81,6 +82,8 @@ UPLOAD_PATH = re.compile(rf"{API_V1}/collections/[0-9]+/uploads")
 OPS_S = 10.0
 """Seconds for which figures of operation are kept: some are counted over all shapes."""
 _METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
+MAX_REPLAYS = 4
+"""Drafts whose labels are made for one person at once."""
 _REQUEST_HEADERS = ("Authorization", "Content-Type", "If-None-Match", "Last-Event-ID")
 
 
@@ -102,9 +105,10 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
             hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h), recent, clock)
             await resources.enter_async_context(hub.running())
             ops = Remembered[OpsOut](OPS_S, clock)
-            owner = draft_owners(workspace.catalog)
+            known = known_drafts(workspace.catalog)
+            replays, streams = AtOnce(MAX_REPLAYS, "drafts read"), AtOnce(settings.max_event_streams, "event streams")
             app.state.service = Service(
-                settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, owner, clock
+                settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, known, replays, streams, clock
             )
             yield
 

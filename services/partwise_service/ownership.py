@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import Protocol, TypeVar
 
 from partwise.errors import NotFoundError
-from partwise.store.catalog import DraftCatalog
+from partwise.store.catalog import Catalog
 from partwise.store.records import Role
 from partwise_service.security.identity import Identity
 
@@ -25,25 +25,26 @@ _DRAFTS = 10_000
 
 
 @dataclass(frozen=True, slots=True)
-class Owner:
-    """Whose something is, and in which collection."""
+class KnownDraft:
+    """What never changes of a draft: whose it is, in which collection, and how many faces its mesh has."""
 
     person_id: int
     collection_id: int
+    n_faces: int
 
 
-def draft_owners(catalog: DraftCatalog) -> Callable[[int], Owner]:
-    """Whose drafts are, by id. That never changes, so that the catalog is asked once for each of the last 10,000.
+def known_drafts(catalog: Catalog) -> Callable[[int], KnownDraft]:
+    """What never changes of drafts, by id, so that the catalog is asked once for each of the last 10,000.
 
     The function raises NotFoundError for a draft that is not there.
     """
 
     @lru_cache(_DRAFTS)
-    def owner(draft_id: int) -> Owner:
+    def known(draft_id: int) -> KnownDraft:
         draft = catalog.draft(draft_id)
-        return Owner(draft.person_id, draft.collection_id)
+        return KnownDraft(draft.person_id, draft.collection_id, catalog.mesh(draft.shape_id, draft.mesh_hash).n_faces)
 
-    return owner
+    return known
 
 
 def visible_row(caller: Identity, find: Callable[[], Row], missing: str) -> Row:

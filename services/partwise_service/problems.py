@@ -4,6 +4,7 @@
 which never tells a path, a database's words or a traceback: what nobody foresaw gets an id that is also in the log.
 """
 
+import json
 import logging
 import secrets
 from collections.abc import Mapping, Sequence
@@ -71,6 +72,15 @@ class ProblemError(Exception):
     headers: Mapping[str, str] = field(default_factory=dict)
 
 
+class _ProblemResponse(JSONResponse):
+    """JSON in ASCII: what was sent is told back as it came, also text that cannot be written as UTF-8."""
+
+    media_type = MEDIA_TYPE
+
+    def render(self, content: Any) -> bytes:
+        return json.dumps(content, allow_nan=False, separators=(",", ":")).encode("ascii")
+
+
 def problem_response(
     kind: ProblemKind,
     detail: str,
@@ -79,8 +89,8 @@ def problem_response(
 ) -> JSONResponse:
     """The document as a response."""
     own = {"type": kind.type, "title": kind.title, "status": kind.status, "detail": detail}
-    return JSONResponse(
-        {**(extensions or {}), **own}, kind.status, {"Cache-Control": "no-store", **(headers or {})}, MEDIA_TYPE
+    return _ProblemResponse(
+        {**(extensions or {}), **own}, kind.status, {"Cache-Control": "no-store", **(headers or {})}
     )
 
 

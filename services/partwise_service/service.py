@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from partwise.workspace.workspace import Workspace
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
-from partwise_service.ownership import Owner
+from partwise_service.ownership import KnownDraft
 from partwise_service.remembered import Remembered
 from partwise_service.schemas.operations import OpsOut
+from partwise_service.security.at_once import AtOnce
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.settings import ServiceSettings
@@ -19,7 +20,8 @@ from partwise_service.tool_pool import ToolPool
 class Service:
     """limiter : of failures to log in, by address and by a secret's beginning. recent : secrets good lately.
 
-    draft_owner : whose a draft is. clock : seconds, monotone.
+    known_draft : what never changes of a draft. replays : drafts that each person has read. streams : of events that
+    each token has open. clock : seconds, monotone.
     """
 
     settings: ServiceSettings
@@ -30,5 +32,7 @@ class Service:
     tools: ToolPool
     ops: Remembered[OpsOut]
     events: EventHub
-    draft_owner: Callable[[int], Owner]
+    known_draft: Callable[[int], KnownDraft]
+    replays: AtOnce
+    streams: AtOnce
     clock: Callable[[], float]

@@ -1,16 +1,18 @@
 """/drafts: work in progress. A stroke is acknowledged once it is committed, and is on record once."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
+import numpy as np
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from partwise.errors import NotFoundError, StaleDraftError
-from partwise.labels.replay import replay
+from partwise.errors import NotFoundError, ParameterError, StaleDraftError
+from partwise.labels.operations import Paint, check_on_mesh
 from partwise.labels.stroke_json import stroke_from_document
+from partwise.labels.strokes import Stroke
 from partwise.store.catalog import Catalog
 from partwise.store.records import Draft
-from partwise.workspace.confirming import begin_draft, confirm, draft_work
+from partwise.workspace.confirming import DraftWork, begin_draft, confirm_labels, draft_work, work_to_confirm
 from partwise.workspace.labelling import keep_mesh
 from partwise_service.answering import AnswerRoute
 from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
@@ -32,10 +34,14 @@ from partwise_service.schemas.drafts import (
     StrokesOut,
 )
 from partwise_service.security.identity import Identity
+from partwise_service.waiting import with_draft_labels
 
 MAX_PAGE = 5_000
 _TAIL = 1_000
 """Strokes of the server's side in a refusal; a client that is further behind pages through the log."""
+MAX_SEEDS = 10_000
+"""Of a stroke that paints."""
+MAX_STROKES_OF_DRAFT = 100_000
 router = APIRouter(route_class=AnswerRoute, tags=["drafts"])
 IfMatch = Annotated[
     str, Header(pattern=r'^(W/)?"[0-9]{1,9}"$', description="The draft's ETag: how many strokes the caller knows of.")
@@ -97,17 +103,19 @@ def list_strokes(
 
 
 @router.get("/drafts/{draft_id}/labels", response_class=Response, responses=SAFETENSORS_RESPONSES)
-def get_draft_labels(request: Request, caller: Annotator, workspace: WorkspaceDep, draft_id: RowId) -> Response:
+async def get_draft_labels(request: Request, caller: Annotator, service: ServiceDep, draft_id: RowId) -> Response:
     """`labels` (m,) uint16 that the strokes leave, and `base` (m,) uint16 that they start from."""
-    draft = visible_draft(workspace.catalog, caller, draft_id)
-    tag = entity_tag("draft", draft.id, draft.n_strokes)
-    held = not_modified(request, tag)
-    if held is not None:
-        return held
-    work = draft_work(workspace, draft)
-    about = {"mesh_hash": draft.mesh_hash, "n_strokes": str(draft.n_strokes)}
-    labels = replay(work.mesh, work.base_labels, work.log)
-    return safetensors_response(request, {"labels": labels, "base": work.base_labels}, tag, metadata=about)
+
+    def read() -> DraftWork | Response:
+        draft = visible_draft(service.workspace.catalog, caller, draft_id)
+        return not_modified(request, _labels_tag(draft)) or draft_work(service.workspace, draft)
+
+    def answer(work: DraftWork, labels: np.ndarray) -> Response:
+        about = {"mesh_hash": work.draft.mesh_hash, "n_strokes": str(work.draft.n_strokes)}
+        arrays = {"labels": labels, "base": work.base_labels}
+        return safetensors_response(request, arrays, _labels_tag(work.draft), metadata=about)
+
+    return await with_draft_labels(request, service, caller.person_id, read, answer)
 
 
 @router.post("/drafts/{draft_id}/strokes")
@@ -119,27 +127,41 @@ def append_strokes(
     409 if the draft went on elsewhere: the problem's `state` is the draft's, `recorded` the log from the expected
     sequence on, and `refused` what was sent, so that the client has both sides.
     """
-    visible_row(caller, lambda: service.draft_owner(draft_id), _missing(draft_id))
+    known = visible_row(caller, lambda: service.known_draft(draft_id), _missing(draft_id))
     catalog = service.workspace.catalog
     strokes = [stroke_from_document(document) for document in sent.strokes]
     try:
+    _refuse_too_much(sent.expected_sequence, strokes)
+    for stroke in strokes:
+        check_on_mesh(stroke.operation, known.n_faces)
         return _tagged(response, catalog.append_strokes(draft_id, caller.person_id, sent.expected_sequence, strokes))
     except StaleDraftError as error:
         raise _both_sides(catalog, error, sent.expected_sequence, {"refused": sent.strokes}) from error
 
 
-@router.post("/drafts/{draft_id}/confirm")
-def confirm_draft(
-    caller: Annotator, workspace: WorkspaceDep, draft_id: RowId, if_match: IfMatch, confirming: ConfirmLabels
-) -> Confirmed:
+@router.post("/drafts/{draft_id}/confirm", response_model=Confirmed)
+async def confirm_draft(
+    request: Request,
+    caller: Annotator,
+    service: ServiceDep,
+    draft_id: RowId,
+    if_match: IfMatch,
+    confirming: ConfirmLabels,
+) -> Response:
     """Make the strokes labels for good. `If-Match` must be the draft's ETag; 409 with its state if it went on."""
-    draft = visible_draft(workspace.catalog, caller, draft_id)
-    n_strokes = int(if_match.removeprefix("W/").strip('"'))
-    try:
-        done = confirm(workspace, draft.id, caller.person_id, n_strokes, confirming.labels_sha256)
-    except StaleDraftError as error:
-        raise _both_sides(workspace.catalog, error, n_strokes, {}) from error
-    return Confirmed.of(done)
+    workspace, n_strokes = service.workspace, int(if_match.removeprefix("W/").strip('"'))
+
+    def read() -> DraftWork:
+        return work_to_confirm(workspace, visible_draft(workspace.catalog, caller, draft_id))
+
+    def answer(work: DraftWork, labels: np.ndarray) -> Response:
+        try:
+            done = confirm_labels(workspace, work, labels, caller.person_id, n_strokes, confirming.labels_sha256)
+        except StaleDraftError as error:
+            raise _both_sides(workspace.catalog, error, n_strokes, {}) from error
+        return json_answer(Confirmed.of(done))
+
+    return await with_draft_labels(request, service, caller.person_id, read, answer)
 
 
 @router.post("/drafts/{draft_id}/acknowledge")
@@ -172,6 +194,24 @@ def visible_draft(catalog: Catalog, caller: Identity, draft_id: int) -> Draft:
 
 
 def _missing(draft_id: int) -> str:
+def _refuse_too_much(expected_sequence: int, strokes: Sequence[Stroke]) -> None:
+    """Limits far beyond what hands do: replaying what is on record must come to an end."""
+    n_strokes = expected_sequence + len(strokes)
+    if n_strokes > MAX_STROKES_OF_DRAFT:
+        raise ParameterError(
+            f"a draft may have {MAX_STROKES_OF_DRAFT:,} strokes but this would make {n_strokes:,}; confirm it first"
+        )
+    for stroke in strokes:
+        if isinstance(stroke.operation, Paint) and len(stroke.operation.seeds) > MAX_SEEDS:
+            raise ParameterError(
+                f"a stroke may have {MAX_SEEDS:,} seeds but one has {len(stroke.operation.seeds):,}; send it as several"
+            )
+
+
+def _labels_tag(draft: Draft) -> str:
+    return entity_tag("draft", draft.id, draft.n_strokes)
+
+
     return f"there is no draft {draft_id} of yours; see /drafts"
 
 

@@ -1,5 +1,7 @@
 """Drafts: strokes acknowledged once they are committed, both sides of a conflict, and what is confirmed."""
 
+import json
+from dataclasses import asdict
 from uuid import uuid4
 
 import numpy as np
@@ -7,9 +9,13 @@ import pytest
 from safetensors.numpy import load
 
 from partwise.labels.encoding import labels_sha256
+from partwise.labels.label_delta import LabelDelta
 from partwise.store.records import NewRevision, RevisionKind, Role
 
 AT = "2026-11-22T12:00:00Z"
+JSON = {"Content-Type": "application/json"}
+_DIFFERENCE = LabelDelta.between(np.zeros(4, np.uint16), np.ones(4, np.uint16))
+DELTA = {"kind": "delta", "source": "patches", "parameters": {}, **asdict(_DIFFERENCE)}
 
 
 class Bench:
@@ -118,6 +124,49 @@ def test_a_malformed_stroke_is_refused_and_nothing_recorded(bench, change) -> No
     assert bench.caller.get(bench.path).json()["n_strokes"] == 0
 
 
+@pytest.mark.parametrize(
+    "operation",
+    [
+        {"kind": "paint", "seeds": [0, 4], "radius": 0.1, "min_cosine": None, "label": 1, "only_over": None},
+        {"kind": "assign", "runs": [[2, 3]], "label": 1},
+        {"kind": "segment_wide", "seed": 4, "label": 1},
+        {**DELTA, "n_faces": 5},
+        {**DELTA, "payload": "AAAA"},
+    ],
+)
+def test_a_stroke_that_could_not_be_replayed_is_refused(bench, operation) -> None:
+    bare = {key: value for key, value in bench.stroke(0).items() if key not in ("runs", "label")}
+    assert bench.send({**bare, **operation}).status_code == 422
+    assert bench.caller.get(bench.path).json()["n_strokes"] == 0
+
+
+def test_a_draft_is_replayed_whatever_was_undone(bench) -> None:
+    bare = {key: value for key, value in bench.stroke(0).items() if key not in ("runs", "label")}
+    undo, redo = {**bare, "kind": "undo"}, {**bare, "kind": "redo", "id": str(uuid4()), "sequence": 1}
+    assert bench.send(undo, redo, *(bench.stroke(2 + face, face) for face in range(4))).json()["n_strokes"] == 6
+    assert load(bench.caller.get(f"{bench.path}/labels").content)["labels"].tolist() == [1, 1, 1, 1]
+    assert bench.confirm(6).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "change", [{"base_revision": 10**30}, {"base_revision": 2**31}, {"author_id": 10**30}, {"sequence": 2**31 - 1}]
+)
+def test_a_number_that_no_catalog_holds_is_refused(bench, change) -> None:
+    stroke = {**bench.stroke(0), **change}
+    assert bench.send(stroke, expected=min(stroke["sequence"], 2**31 - 1)).status_code == 422
+
+
+@pytest.mark.parametrize("text", ["\ud800", "\0"])
+def test_text_that_could_not_be_told_again_is_refused(bench, text) -> None:
+    bare = {key: value for key, value in bench.stroke(0).items() if key not in ("runs", "label")}
+    strokes = [{**bare, **DELTA, "parameters": {"model": text}}, {**bench.stroke(0), text: 1}]
+    for stroke in strokes:
+        body = json.dumps({"expected_sequence": 0, "strokes": [stroke]})
+        answer = bench.caller.post(f"{bench.path}/strokes", content=body, headers=JSON)
+        assert (answer.status_code, answer.json()["status"]) == (422, 422)
+    assert bench.caller.get(f"{bench.path}/strokes").json()["items"] == []
+
+
 def test_labels_of_a_draft(bench) -> None:
     bench.send(bench.stroke(0, 1, 2))
     answer = bench.caller.get(f"{bench.path}/labels")
@@ -212,6 +261,19 @@ def test_a_discarded_draft_takes_no_more_strokes(bench) -> None:
     assert bench.send(bench.stroke(1)).status_code == 409
     assert len(bench.caller.get(f"{bench.path}/strokes").json()["items"]) == 1
     assert bench.confirm(1).status_code == 409
+
+
+def test_strokes_on_record_may_be_sent_again_to_a_closed_draft(bench) -> None:
+    strokes = [bench.stroke(n, n) for n in range(4)]
+    bench.send(*strokes)
+    bench.confirm(4)
+    again = bench.send(*strokes)
+    assert (again.status_code, again.json()["outcome"]) == (200, "confirmed")
+    late = bench.stroke(4)
+    refused = bench.send(*strokes[2:], late)
+    assert (refused.status_code, refused.json()["state"]["outcome"]) == (409, "confirmed")
+    assert [each["id"] for each in refused.json()["recorded"]] == [each["id"] for each in strokes[2:]]
+    assert refused.json()["refused"] == [*strokes[2:], late]
 
 
 def test_another_persons_draft_does_not_exist(bench, issue, mugs) -> None:

@@ -88,8 +88,8 @@ export class FakeService implements DraftTransport {
 
   append(_id: number, expected: number, strokes: readonly StrokeJson[], signal: AbortSignal) {
     return this.answer(signal, () => {
-      if (this.outcome !== null) throw conflict(`draft is ${this.outcome}`);
       const fresh = strokes.filter((stroke) => !this.log.some((known) => known.id === stroke.id));
+      if (this.outcome !== null && fresh.length > 0) throw this.stale();
       const first = fresh[0]?.sequence ?? expected;
       if ((fresh.length > 0 && first !== this.log.length) || first > this.log.length) throw this.stale();
       this.log.push(...fresh);
@@ -142,6 +142,7 @@ export class FakeService implements DraftTransport {
       base_revision: null,
       seen_revision: this.seen,
       head_revision: this.head,
+      outcome: this.outcome,
     };
     return conflict("the draft went on elsewhere", { state, recorded: [], refused: [] });
   }
@@ -156,10 +157,10 @@ export function problem(status: number, kind: string, detail: string, extensions
 }
 
 /** A stroke at a place of the log. */
-export function stroke(sequence: number, id = `stroke ${sequence}`): StrokeJson {
+export function stroke(sequence: number, id = `stroke ${sequence}`, label = 1): StrokeJson {
   const at = "2026-01-01T00:00:00Z";
   const place = { sequence, base_revision: null, author_id: 2 };
-  return { v: 1, kind: "assign", runs: [[sequence, 1]], label: 1, id, at, ...place };
+  return { v: 1, kind: "assign", runs: [[sequence, 1]], label, id, at, ...place };
 }
 
 /** Locks and channels that some tabs of one browser share. */

@@ -51,6 +51,11 @@ export function failureOf(error: unknown): Failure {
     return { kind: "passing", why };
   }
   if (error.status === 401) return { kind: "signed-out", why };
-  if (error.status === 409) return { kind: "state" in error.document ? "stale" : "closed", why };
+  if (error.status === 409) return { kind: isStillOpen(error.document.state) ? "stale" : "closed", why };
   return { kind: "refused", why };
+}
+
+/** Whether a refusal tells the state of a draft that takes strokes: without one, or with an outcome, it takes none. */
+function isStillOpen(state: unknown): boolean {
+  return typeof state === "object" && state !== null && (state as { outcome?: unknown }).outcome === null;
 }

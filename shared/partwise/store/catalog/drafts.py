@@ -47,11 +47,12 @@ class DraftCatalog(Protocol):
     def append_strokes(self, draft_id: int, person_id: int, expected_sequence: int, strokes: Sequence[Stroke]) -> Draft:
         """Commit strokes numbered on from `expected_sequence`; the draft as it is then. Safe to send again.
 
-        Strokes that are on record already are passed over, so a repeated or overlapping sending adds the rest only.
+        Strokes that are on record already are passed over, so a repeated or overlapping sending adds the rest only; to
+        a draft that was closed meanwhile they can be sent again, too.
 
-        Raises `StaleDraftError` if the sequence is not the draft's next one, a stroke is on another base revision, or
-        one of the same id or number differs; `ConflictError` if the draft is closed or another person's;
-        `ParameterError` if the strokes are not numbered so or name another author.
+        Raises `StaleDraftError` if the sequence is not the draft's next one, the draft is closed, a stroke is on
+        another base revision, or one of the same id or number differs; `ConflictError` if the draft is another
+        person's; `ParameterError` if the strokes are not numbered so or name another author.
         """
         ...
 

@@ -108,8 +108,9 @@ def append_strokes(
 ) -> Draft:
     """Of strokes that `follow_on` has left, appends those that are not on record, or says why they cannot be."""
     known = locked_draft(connection, draft_id, person_id)
-    refuse_closed(known)
     new = _unknown(connection, known, strokes)
+    if new and known.outcome is not None:
+        raise stale(connection, known, _closed(known))
     first = new[0].sequence if new else expected_sequence
     if (new and first != known.n_strokes) or first > known.n_strokes:
         raise stale(
@@ -264,7 +265,11 @@ def locked_draft(connection: Connection, draft_id: int, person_id: int) -> Draft
 
 def refuse_closed(known: Draft) -> None:
     if known.outcome is not None:
-        raise ConflictError(f"a draft must be open for this but draft {known.id} is {known.outcome}; open another")
+        raise ConflictError(_closed(known))
+
+
+def _closed(known: Draft) -> str:
+    return f"a draft must be open for this but draft {known.id} is {known.outcome}; open another"
 
 
 def stale(connection: Connection, known: Draft, message: str) -> StaleDraftError:

@@ -140,6 +140,18 @@ class DraftConformance:
             catalog.append_strokes(draft.id, draft.person_id, 1, strokes(draft, 1, 1))
         assert blank_draft(catalog, lease).id != draft.id
 
+    def test_a_closed_draft_passes_over_strokes_that_it_has(self, catalog: Catalog) -> None:
+        _, lease = leased_shape(catalog)
+        draft = blank_draft(catalog, lease)
+        sent = strokes(draft, 0, 3)
+        catalog.append_strokes(draft.id, draft.person_id, 0, sent[:2])
+        closed = catalog.discard_draft(draft.id, draft.person_id)
+        assert catalog.append_strokes(draft.id, draft.person_id, 0, sent[:2]) == closed
+        with pytest.raises(StaleDraftError, match="discarded") as refused:
+            catalog.append_strokes(draft.id, draft.person_id, 1, sent[1:])
+        assert (refused.value.state["outcome"], refused.value.state["n_strokes"]) == (DraftOutcome.DISCARDED, 2)
+        assert len(catalog.strokes(draft.id)) == 2
+
     def test_strokes_are_taken_after_the_lease_has_ended(self, catalog: Catalog) -> None:
         _, lease = leased_shape(catalog)
         draft = blank_draft(catalog, lease)
