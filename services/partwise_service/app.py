@@ -44,9 +44,9 @@ from partwise_service.routes import (
     uploads,
 )
 from partwise_service.schemas.operations import OpsOut
-from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
 from partwise_service.security.at_once import AtOnce
 from partwise_service.security.rate_limit import FailureLimiter
+from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.service import Service
 from partwise_service.settings import ServiceSettings
@@ -81,10 +81,10 @@ UPLOAD_PATH = re.compile(rf"{API_V1}/collections/[0-9]+/uploads")
 """Paths whose requests may be as large as `max_upload_bytes`."""
 OPS_S = 10.0
 """Seconds for which figures of operation are kept: some are counted over all shapes."""
-_METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
 MAX_REPLAYS = 4
 """Drafts whose labels are made for one person at once."""
-_REQUEST_HEADERS = ("Authorization", "Content-Type", "If-None-Match", "Last-Event-ID")
+_METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
+_REQUEST_HEADERS = ("Authorization", "Content-Type", "If-Match", "If-None-Match", "Last-Event-ID")
 
 
 def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.monotonic) -> FastAPI:

@@ -126,6 +126,14 @@ class TestCrossOrigin:
         answer = nobody.request("OPTIONS", "/me", headers=asked)
         assert answer.headers["access-control-allow-origin"] == "https://lab.example.org"
 
+    @pytest.mark.parametrize("header", ["Authorization", "Content-Type", "If-Match", "If-None-Match", "Last-Event-ID"])
+    def test_it_may_send_every_header_that_the_service_reads(self, nobody, header) -> None:
+        asked = {"Origin": "https://lab.example.org", "Access-Control-Request-Method": "POST"}
+        wished = {**asked, "Access-Control-Request-Headers": header.lower()}
+        answer = nobody.request("OPTIONS", "/drafts/1/confirm", headers=wished)
+        assert answer.status_code == 200
+        assert header.lower() in answer.headers["access-control-allow-headers"].lower()
+
     @pytest.mark.parametrize(
         "origin", ["https://evil.example", "https://lab.example.org.evil.example", "http://lab.example.org", "null"]
     )
