@@ -54,7 +54,7 @@ def open_draft(
 ) -> DraftOut:
     """The caller's open draft of the leased shape, as it was left, or a new one."""
     lease = visible_lease(workspace.catalog, caller, lease_id)
-    draft = begin_draft(workspace, lease, new.base_revision)
+    draft = begin_draft(workspace, lease, caller.person_id, new.base_revision)
     # a remesh cannot be repeated to the bit, so a mesh that strokes are on must outlive it
     keep_mesh(workspace, workspace.catalog.mesh(draft.shape_id, draft.mesh_hash))
     return _tagged(response, draft)

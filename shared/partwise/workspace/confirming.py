@@ -55,14 +55,19 @@ class DraftWork:
     log: StrokeLog
 
 
-def begin_draft(workspace: Workspace, lease: Lease, base_revision: int | None = None) -> Draft:
-    """The open draft of the lease's holder, or a new one on the shape's present mesh.
+    def replayed(self) -> UInt16[np.ndarray, " m"]:
+        """The labels that the strokes leave. Raises as `replay`."""
+        return replay(self.mesh, self.base_labels, self.log)
+
+
+def begin_draft(workspace: Workspace, lease: Lease, person_id: int, base_revision: int | None = None) -> Draft:
+    """The person's open draft of a shape that they hold, or a new one on the shape's present mesh.
 
     base_revision : labels to start from; None for none.
 
     Raises
     ------
-    ConflictError : the lease has ended, or the shape has no mesh.
+    ConflictError : the lease has ended or is another person's, or the shape has no mesh.
     LabelError : the base is not labels of the shape's present mesh.
     """
     mesh = shape_mesh(workspace, workspace.catalog.shape(lease.shape_id))
@@ -72,7 +77,7 @@ def begin_draft(workspace: Workspace, lease: Lease, base_revision: int | None = 
     else:
         sha256 = workspace.catalog.revision(base_revision).sha256
     new = NewDraft(mesh.mesh_hash, base_revision, sha256, schema.version)
-    return workspace.catalog.open_draft(lease.id, lease.person_id, new)
+    return workspace.catalog.open_draft(lease.id, person_id, new)
 
 
 def draft_work(workspace: Workspace, draft: Draft) -> DraftWork:

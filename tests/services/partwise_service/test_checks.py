@@ -27,7 +27,7 @@ def handed_in(workspace, mugs):
         catalog = workspace.catalog
         person_id = next(each.id for each in catalog.list_people() if each.name == name)
         lease = catalog.claim_next(NewClaim(mugs.collection_id, person_id, 60, draw))
-        draft = begin_draft(workspace, lease)
+        draft = begin_draft(workspace, lease, lease.person_id)
         stroke = _everywhere(draft, catalog.mesh(draft.shape_id, draft.mesh_hash).n_faces, part)
         catalog.append_strokes(draft.id, person_id, 0, [stroke])
         confirm(workspace, draft.id, person_id, 1)

@@ -291,5 +291,11 @@ def test_an_operator_may_look_at_a_draft_but_not_add_to_it(bench, operator) -> N
     assert bench.confirm(0).status_code == 409
 
 
+def test_nobody_opens_a_draft_in_anothers_name(annotator, operator, mugs) -> None:
+    lease = annotator.post("/queue/claim", json={"collection_id": mugs.collection_id}).json()["items"][0]
+    assert operator.post(f"/leases/{lease['id']}/draft", json={}).status_code == 409
+    assert annotator.get("/drafts").json()["items"] == []
+
+
 def test_there_is_no_draft_of_an_untouched_shape(annotator, mugs) -> None:
     assert annotator.get(f"/shapes/{mugs.ids['b.off']}/draft").status_code == 404

@@ -39,7 +39,7 @@ def confirmed(annotator, workspace, mugs):
 
     def done(active_s: float, draw: float = 0.9, check: NewBlindCheck | None = None) -> int:
         lease = catalog.claim_next(NewClaim(mugs.collection_id, ann, 60, draw))
-        draft = begin_draft(workspace, lease)
+        draft = begin_draft(workspace, lease, lease.person_id)
         n_faces = catalog.mesh(draft.shape_id, draft.mesh_hash).n_faces
         cost = AnnotationCost(strokes=6, commands=0, undos=0, redos=0, active_s=active_s, n_idle_gaps=0)
         labels = np.ones(n_faces, dtype=np.uint16)

@@ -22,7 +22,7 @@ def _begun(filled, name: str, base_revision: int | None = None, draw: float = 0.
     person = catalog.add_person(name)
     lease = catalog.claim_next(NewClaim(filled.collection.id, person.id, 60, draw))
     assert lease is not None
-    return begin_draft(filled.workspace, lease, base_revision)
+    return begin_draft(filled.workspace, lease, lease.person_id, base_revision)
 
 
 def _paint(filled, draft: Draft, labels: list[int]) -> Draft:
@@ -56,7 +56,7 @@ def test_a_draft_starts_from_labels(filled) -> None:
         filled.workspace, filled.collection, shape, np.array([1, 1, 1, 1], np.uint16), RevisionKind.HUMAN, "ann"
     )
     lease = filled.workspace.catalog.claim_shape(shape.id, base.author_id, 60)
-    draft = begin_draft(filled.workspace, lease, base.id)
+    draft = begin_draft(filled.workspace, lease, lease.person_id, base.id)
     assert draft_work(filled.workspace, draft).base_labels.tolist() == [1, 1, 1, 1]
     confirmation = _confirmed(filled, draft, [2, 1, 1, 1])
     assert confirmation.revision_id is not None
