@@ -1,4 +1,4 @@
-import { useEffect, useMemo, useRef } from "react";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "react";
 import { Button, Notice } from "../../../components";
 import { useObservable } from "../../../drafts/useObservable";
 import { resolvedColour } from "../../../viewer/colours";
@@ -13,7 +13,7 @@ import type { Patches } from "../tools/usePatches";
 import styles from "./Stage.module.css";
 import { StageArea } from "./StageArea";
 import { type LiveView, Viewport } from "./Viewport";
-import { FIRST_LOOKS, shownAt, type Views, withShown } from "./views";
+import { FIRST_LOOKS, inViews, shownAt, type Views, withShown } from "./views";
 
 export interface StageProps {
   desk: Desk;
@@ -23,6 +23,7 @@ export interface StageProps {
   views: Views;
   up: UpAxis;
   scheme: string;
+  /** Another view is the one that keys act on, which is marked. */
   onActive: (live: LiveView | null) => void;
   onUnseen: () => void;
   onViews: (some: Partial<Views>) => void;
@@ -34,7 +35,9 @@ export function Stage(props: StageProps) {
   const { desk, views } = props;
   const { shapes, current } = useObservable(desk.state);
   const isByShape = views.content === "shapes" && views.count > 1;
-  const shown = Array.from({ length: views.count }, (_, at) => (isByShape ? (shapes[at] ?? null) : current));
+  const shown = isByShape
+    ? inViews(shapes, current, views.count)
+    : Array.from({ length: views.count }, () => current);
   return (
     <StageArea count={views.count} onUnseen={props.onUnseen}>
       {(stage) => <ViewGrid {...props} stage={stage} shown={shown} isByShape={isByShape} current={current} />}
@@ -50,9 +53,20 @@ interface ViewGridProps extends StageProps {
 }
 
 function ViewGrid(props: ViewGridProps) {
-  const { stage, shown, isByShape, current, views, desk } = props;
+  const { stage, shown, isByShape, current, views, desk, onActive } = props;
   const live = useRef<(LiveView | null)[]>([]);
-  const active = useRef(0);
+  const [engaged, setEngaged] = useState(0);
+  const active = isByShape ? shown.indexOf(current) : Math.min(engaged, views.count - 1);
+
+  useLayoutEffect(() => {
+    onActive(live.current[active] ?? null); // each time: the view at the place may be another one
+    return () => onActive(null);
+  });
+
+  useLayoutEffect(() => {
+    const hasFocus = live.current.some((each) => each?.view.element === document.activeElement);
+    if (hasFocus) live.current[active]?.view.element.focus({ preventScroll: true });
+  }, [active]);
 
   useEffect(() => {
     for (const held of shown) if (held !== null) desk.begin(held);
@@ -67,8 +81,7 @@ function ViewGrid(props: ViewGridProps) {
 
   return shown.map((held, at) => {
     const engage = () => {
-      active.current = at;
-      props.onActive(live.current[at] ?? null);
+      setEngaged(at);
       if (held !== null && held !== current) desk.show(held);
     };
     const key = `${at}`;
@@ -79,11 +92,10 @@ function ViewGrid(props: ViewGridProps) {
         {...props}
         held={held}
         at={at}
-        isActive={isByShape ? held === current : active.current === at}
+        isActive={at === active}
         onEngage={engage}
         onLive={(view) => {
           live.current[at] = view;
-          if (active.current === at || view === null) props.onActive(live.current[active.current] ?? null);
         }}
       />
     );

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { nextShown, SHOWN_CHOICES, whyMissing } from "./shown";
-import { nextCount, ONE_VIEW, shownAt, withShown } from "./views";
+import { inViews, nextCount, ONE_VIEW, shownAt, withShown } from "./views";
 
 describe("views", () => {
   it("are one to four, and one again", () => {
@@ -16,6 +16,15 @@ describe("views", () => {
       "draft",
     ]);
     expect(shownAt({ ...views, shown: withShown(views, 2, "draft") }, 2)).toBe("draft");
+  });
+
+  it("have a shape each, and room for more", () => {
+    expect(inViews(["a", "b"], "a", 3)).toEqual(["a", "b", null]);
+  });
+
+  it("have the shape in hand in one of them, though there are more shapes than views", () => {
+    expect(inViews(["a", "b", "c"], "b", 2)).toEqual(["a", "b"]);
+    expect(inViews(["a", "b", "c"], "c", 2)).toEqual(["a", "c"]);
   });
 
   it("pass through all that can be shown, back to the draft", () => {

@@ -39,3 +39,14 @@ export function shownAt(views: Views, place: number): Shown {
 export function withShown(views: Views, place: number, shown: Shown): Views["shown"] {
   return VIEW_COUNTS.map((_, at) => (at === place ? shown : views.shown[at]));
 }
+
+/** What each of `count` views has where each has a shape of its own: the first, and always the one in hand. */
+export function inViews<Shape>(
+  shapes: readonly Shape[],
+  current: Shape | null,
+  count: ViewCount,
+): readonly (Shape | null)[] {
+  const shown: (Shape | null)[] = Array.from({ length: count }, (_, at) => shapes[at] ?? null);
+  if (current !== null && !shown.includes(current)) shown[count - 1] = current;
+  return shown;
+}
