@@ -5,14 +5,18 @@ import re
 import threading
 import urllib.request
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
 import ray
 
+from partwise.errors import WorkerError
 from partwise.store.records import FailureKind
 from partwise.workspace.figures import CollectionFigures
 from partwise.workspace.progress import RunProgress
+from partwise_workers import metrics, passes
 from partwise_workers.events import ActorRestarted, InFlight, StageDone, StageFailed
 from partwise_workers.metrics import CollectionMetrics, RunMetrics
 
@@ -36,10 +40,10 @@ Value = Callable[..., float]
 @pytest.fixture(scope="module")
 def samples(local_ray: None) -> Iterator[list[tuple[str, dict[str, str], float]]]:
     """Name, labels and value of every sample that a node exports, once ours and Ray's own have arrived."""
-    metrics = RunMetrics()
+    of_run = RunMetrics()
     for event in EVENTS:
-        metrics(event)
-    metrics.on_progress(RunProgress(5, 1, 9))
+        of_run(event)
+    of_run.on_progress(RunProgress(5, 1, 9))
     of_collections = CollectionMetrics()
     of_collections.tell("mugs", FIGURES)
     of_collections.tell_stored(1_000)
@@ -123,3 +127,50 @@ def test_the_dashboard_asks_for_metrics_that_there_are(samples: list[tuple[str, 
     asked = {name for query in queries for name in re.findall(r"ray_(\w+)", query)}
     assert len(asked) > 10
     assert asked <= {name for name, _, _ in samples}
+
+
+@pytest.mark.parametrize("error", [None, KeyboardInterrupt, WorkerError])
+def test_of_a_run_that_is_over_nothing_is_left(monkeypatch, error) -> None:
+    left: list[int] = []
+
+    class Metrics:
+        def on_progress(self, run: RunProgress) -> None:
+            left.append(run.n_total - run.n_done)
+
+        def end(self) -> None:
+            left.append(0)
+
+    class Runner:
+        def __init__(self, *_: object) -> None:
+            pass
+
+        def run(self, _tasks, n_total: int, on_progress) -> RunProgress:
+            on_progress(RunProgress(1, 0, n_total))
+            if error is not None:
+                raise error
+            return RunProgress(n_total, 0, n_total)
+
+    monkeypatch.setattr(passes, "connected", nullcontext)
+    monkeypatch.setattr(passes, "RunMetrics", Metrics)
+    monkeypatch.setattr(passes, "StageRunner", Runner)
+    with nullcontext() if error is None else pytest.raises(error):
+        passes.run_tasks(MagicMock(), (), iter(()), 9, lambda _: None, lambda _: None, passes.nothing_else)
+    assert left == [8, 0]
+
+
+def test_the_end_of_a_run_sets_its_gauges_to_nothing(monkeypatch) -> None:
+    shown: dict[str, float] = {}
+
+    class Kept:
+        def __init__(self, name: str, _about: str) -> None:
+            self._name = name
+
+        def set(self, value: float) -> None:
+            shown[self._name] = value
+
+    monkeypatch.setattr(metrics, "Gauge", Kept)
+    made = RunMetrics()
+    made.on_progress(RunProgress(1, 0, 9))
+    made(InFlight(3))
+    made.end()
+    assert shown == {"partwise_shapes_left": 0, "partwise_shapes_in_flight": 0}

@@ -52,6 +52,11 @@ class RunMetrics:
         """Implements `OnRunProgress`."""
         self._left.set(run.n_total - run.n_done - run.n_failed)
 
+    def end(self) -> None:
+        """The run is over, however it ended: nothing is left of it to wait for."""
+        self._left.set(0)
+        self._in_flight.set(0)
+
 
 class CollectionMetrics:
     """Figures of collections, by name. Needs a connected Ray."""

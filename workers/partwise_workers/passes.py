@@ -181,4 +181,7 @@ def run_tasks(
 
         ws = workspace
         runner = StageRunner(ws.catalog, ws.arrays, ws.array_url, stages, ws.config.workers, also_publish, tell)
-        return runner.run(tasks, n_total, tell_progress)
+        try:
+            return runner.run(tasks, n_total, tell_progress)
+        finally:
+            metrics.end()

@@ -16,7 +16,7 @@ EVERY_S = 60.0
 
 
 class Figures(Repeated):
-    """While the block lasts. Ray exports what is told: before the first job that needs it, nothing is."""
+    """While the block lasts. Ray exports what is told: nothing is until a job needs it, or an idle worker joins it."""
 
     def __init__(self, workspace: Workspace, cluster: Cluster, every_s: float = EVERY_S) -> None:
         super().__init__("figures", every_s)

@@ -83,6 +83,7 @@ class Worker:
             if once and not has_worked:
                 return
             if not has_worked:
+                self._cluster.join()
                 self._never.wait(self._workspace.config.jobs.poll_s)
 
     def work_once(self) -> bool:
