@@ -27,6 +27,7 @@ export function StageArea(props: {
     try {
       const made = new ShapeStage(canvas);
       made.onContext = (state) => setLost(state === "lost");
+      setLost(false);
       setStage(made);
       return () => {
         setStage(null);
