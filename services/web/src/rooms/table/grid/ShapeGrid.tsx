@@ -1,16 +1,20 @@
 import { type KeyboardEvent, useEffect, useRef, useState } from "react";
 import { Skeleton } from "../../../components";
 import type { ShapeRow } from "../rows/shapeRows";
+import type { RowList } from "../rows/tableQueries";
 import type { SelectionState } from "../selection/useSelection";
+import { leftPlace, rememberPlace } from "../view/leftPlaces";
 import { GAP_PX, gridGeometry, placeAfter } from "./gridGeometry";
 import styles from "./ShapeGrid.module.css";
 import { ShapeTile, type TileLook, tileId } from "./ShapeTile";
 import { useGridPointer } from "./useGridPointer";
 import { useGridVirtualizer } from "./useGridVirtualizer";
+import { useHeldPlace } from "./useHeldPlace";
 import { useSelectAllKey } from "./useSelectAllKey";
 import { useSize } from "./useSize";
 
 export interface ShapeGridProps {
+  readonly list: RowList;
   readonly nShapes: number;
   readonly look: TileLook;
   readonly selection: SelectionState;
@@ -21,7 +25,8 @@ export interface ShapeGridProps {
 }
 
 /** Tiles of a list of any length, of which only those in view are drawn. */
-export function ShapeGrid({ nShapes, look, selection: chosen, rowAt, onWindow, onOpen }: ShapeGridProps) {
+export function ShapeGrid(props: ShapeGridProps) {
+  const { list, nShapes, look, selection: chosen, rowAt, onWindow, onOpen } = props;
   const scroller = useRef<HTMLDivElement>(null);
   const { width, height } = useSize(scroller);
   const [isByKey, setByKey] = useState(false);
@@ -34,6 +39,11 @@ export function ShapeGrid({ nShapes, look, selection: chosen, rowAt, onWindow, o
 
   const { selection } = chosen;
   const cursor = Math.min(selection.cursor, Math.max(0, nShapes - 1));
+  const [began] = useState(() => leftPlace(list));
+  const place = useHeldPlace(scroller, geometry, grid.ratio, width > 0, began.first);
+  const leave = useRef(() => {});
+  leave.current = () => rememberPlace(list, { first: place.current, cursor });
+  useEffect(() => () => leave.current(), []);
   const withRow = (place: number, then: (row: ShapeRow) => void) => {
     const row = rowAt(place);
     if (row) then(row);

@@ -1,5 +1,13 @@
 import { describe, expect, it } from "vitest";
-import { GAP_PX, gridGeometry, placeAfter, scrollScale } from "./gridGeometry";
+import {
+  BAR_PX,
+  GAP_PX,
+  gridGeometry,
+  placeAfter,
+  scrollScale,
+  scrollTopOf,
+  scrollTopToShow,
+} from "./gridGeometry";
 
 describe("gridGeometry", () => {
   it.each([320, 768, 1280, 2560])("tiles and gaps fill a width of %i without overflowing it", (width) => {
@@ -30,6 +38,41 @@ describe("scrollScale", () => {
   it("ends at the last row however long the grid is", () => {
     const { elementPx, ratio } = scrollScale(60_000_000, 700);
     expect((elementPx - 700) * ratio).toBeCloseTo(60_000_000 - 700);
+  });
+});
+
+describe("scrollTopToShow", () => {
+  const RATIO = 1.5;
+  const ROW_PX = 260;
+  const N_ROWS = 69_000;
+  const view = { viewportPx: 700, ratio: RATIO };
+  const contentPx = N_ROWS * ROW_PX + GAP_PX + BAR_PX;
+  /** Of the grid, what is in view from a place of the scrollbar on. */
+  const shown = (scrollTopPx: number) =>
+    [scrollTopPx * RATIO, scrollTopPx * RATIO + view.viewportPx] as const;
+
+  it.each([0, 1, 40_000, N_ROWS - 1])("brings all of row %i into view, in pixels of the scrollbar", (row) => {
+    for (const scrollTopPx of [0, 3_000_000, (contentPx - view.viewportPx) / RATIO]) {
+      const found = scrollTopToShow(row, ROW_PX, { ...view, scrollTopPx });
+      const [begin, end] = shown(found);
+      expect(row * ROW_PX).toBeGreaterThanOrEqual(begin - 1e-6);
+      expect(GAP_PX + (row + 1) * ROW_PX).toBeLessThanOrEqual(end - BAR_PX + 1e-6);
+      expect(scrollTopToShow(row, ROW_PX, { ...view, scrollTopPx: found })).toBeCloseTo(found);
+    }
+  });
+
+  it("goes to the very end for the last row", () => {
+    const found = scrollTopToShow(N_ROWS - 1, ROW_PX, { ...view, scrollTopPx: 0 });
+    expect(found).toBeCloseTo((contentPx - view.viewportPx) / RATIO);
+  });
+
+  it("begins a row in view that is taller than the view", () => {
+    expect(scrollTopToShow(3, 260, { scrollTopPx: 0, viewportPx: 200, ratio: 1 })).toBe(780);
+    expect(scrollTopToShow(3, 260, { scrollTopPx: 900, viewportPx: 200, ratio: 1 })).toBe(780);
+  });
+
+  it("brings a row to the top where it is first", () => {
+    expect(scrollTopOf(9, ROW_PX, RATIO) * RATIO).toBeCloseTo(9 * ROW_PX);
   });
 });
 

@@ -7,7 +7,7 @@ const LEAST_TILE_PX: Readonly<Record<TileSize, number>> = { s: 96, m: 144, l: 21
 const CAPTION_PX: Readonly<Record<TileSize, number>> = { s: 24, m: 46, l: 46 };
 
 /** Left free below the last row, where the bar of what is selected floats. */
-const BAR_PX = 64;
+export const BAR_PX = 64;
 
 /** Browsers cut elements off beyond some 17 to 33 million pixels; past this, the scrollbar runs faster than the page. */
 const LONGEST_PX = 12_000_000;
@@ -39,6 +39,28 @@ export interface ScrollScale {
 export function scrollScale(contentPx: number, viewportPx: number): ScrollScale {
   if (contentPx <= LONGEST_PX || viewportPx >= LONGEST_PX) return { elementPx: contentPx, ratio: 1 };
   return { elementPx: LONGEST_PX, ratio: (contentPx - viewportPx) / (LONGEST_PX - viewportPx) };
+}
+
+/** What of the grid is in view. ratio : of its scroll scale. */
+export interface GridView {
+  readonly scrollTopPx: number;
+  readonly viewportPx: number;
+  readonly ratio: number;
+}
+
+/** Where the scrollbar stands when a row is the first in view. */
+export function scrollTopOf(row: number, rowPx: number, ratio: number): number {
+  return (row * rowPx) / ratio;
+}
+
+/** Where the scrollbar stands when all of a row is in view, clear of the bar at the bottom; as it is where that is so. */
+export function scrollTopToShow(row: number, rowPx: number, view: GridView): number {
+  const { scrollTopPx, viewportPx, ratio } = view;
+  const shownPx = scrollTopPx * ratio;
+  const firstPx = row * rowPx;
+  const lastPx = firstPx + GAP_PX + rowPx + BAR_PX - viewportPx;
+  const isTooTall = lastPx > firstPx; // it begins in view
+  return (isTooTall ? firstPx : Math.min(firstPx, Math.max(lastPx, shownPx))) / ratio;
 }
 
 /** The place that a key leads to from `place`; null if the key does not move. */

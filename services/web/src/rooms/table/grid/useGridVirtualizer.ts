@@ -6,7 +6,7 @@ import {
   type VirtualItem,
 } from "@tanstack/react-virtual";
 import { type RefObject, useEffect, useLayoutEffect, useRef } from "react";
-import { GAP_PX, type GridGeometry, scrollScale } from "./gridGeometry";
+import { GAP_PX, type GridGeometry, scrollScale, scrollTopToShow } from "./gridGeometry";
 
 const ROWS_AHEAD = 2;
 
@@ -14,6 +14,8 @@ export interface GridWindow {
   readonly rows: readonly VirtualItem[];
   /** Height of the element that scrolls. */
   readonly elementPx: number;
+  /** Pixels of the grid that one of the scrollbar stands for. */
+  readonly ratio: number;
   /** Where rows are drawn: an element inside it, which this moves along. */
   readonly stage: RefObject<HTMLDivElement | null>;
   readonly isScrolling: boolean;
@@ -49,9 +51,16 @@ export function useGridVirtualizer(
   return {
     rows,
     elementPx,
+    ratio,
     stage,
     isScrolling: virtualizer.isScrolling,
-    show: (row) => virtualizer.scrollToIndex(row, { align: "auto" }),
+    // Not by the virtualizer, which knows the length of the element only and takes it for that of the grid.
+    show: (row) => {
+      const element = scroller.current;
+      if (element === null) return;
+      const view = { scrollTopPx: element.scrollTop, viewportPx, ratio };
+      element.scrollTop = scrollTopToShow(row, geometry.rowPx, view);
+    },
   };
 }
 
