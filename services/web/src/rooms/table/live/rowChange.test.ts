@@ -32,6 +32,10 @@ describe("rowChangeOf", () => {
     expect(rowChangeOf(each)).toBe("all");
   });
 
+  it("a stage that goes on concerns the rows in sight", () => {
+    expect(rowChangeOf(event("stage", { stage: "describe", done: 3, failed: 0 }))).toBe("in sight");
+  });
+
   it.each([
     event("job", { job_id: 1, state: "running", done: 3 }),
     event("people", { person_id: 2, what: "confirmed" }),

@@ -1,5 +1,5 @@
 // @vitest-environment jsdom
-import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
+import { QueryClient, QueryClientProvider, QueryObserver } from "@tanstack/react-query";
 import { act, cleanup, renderHook } from "@testing-library/react";
 import type { ReactNode } from "react";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
@@ -39,11 +39,11 @@ function shown() {
   const { result, unmount } = renderHook(() => useLiveRows(LIST), { wrapper });
   const publish = (kind: EventKind, payload: Record<string, unknown>) =>
     act(() => hub.publish({ kind, at: "", collectionId: 1, payload }));
-  const rows = () => client.getQueryData<RowPage>(pageQuery(LIST, 0).queryKey)?.items ?? [];
-  return { result, unmount, publish, rows, hub };
+  const rows = (page = 0) => client.getQueryData<RowPage>(pageQuery(LIST, page).queryKey)?.items ?? [];
+  return { result, unmount, publish, rows, hub, client };
 }
 
-const pass = () => act(() => vi.advanceTimersByTimeAsync(1_000));
+const pass = (ms = 1_000) => act(() => vi.advanceTimersByTimeAsync(ms));
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -63,7 +63,7 @@ describe("useLiveRows", () => {
     expect(rows()[1]).toMatchObject({ id: 2, state: "confirmed", author_name: null });
     await pass();
     expect(rows()[1]).toMatchObject({ id: 2, author_name: "ann" });
-    expect(result.current).toBe(false);
+    expect(result.current).toBeNull();
   });
 
   it("does not ask the service about shapes that are not shown", async () => {
@@ -86,7 +86,7 @@ describe("useLiveRows", () => {
     const { result, publish, rows } = shown();
     publish("queue", { re_ranked: 2 });
     await pass();
-    expect(result.current).toBe(true);
+    expect(result.current).toMatchObject({ nMore: 0 });
     expect(rows().map((row) => [row.id, row.score])).toEqual([
       [1, 0.1],
       [2, 0.9],
@@ -104,7 +104,7 @@ describe("useLiveRows", () => {
       [1, "ready"],
       [2, "confirmed"],
     ]);
-    expect(result.current).toBe(true);
+    expect(result.current).toMatchObject({ nMore: -1 });
   });
 
   it("keeps what is shown where the service cannot be reached", async () => {
@@ -114,6 +114,48 @@ describe("useLiveRows", () => {
     act(() => hub.publishMissed());
     await pass();
     expect(rows().map((row) => row.id)).toEqual([1, 2]);
+  });
+
+  it("reads pages again that could not be read, and the others at once", async () => {
+    const { publish, rows, client } = shown();
+    client.setQueryData(pageQuery(LIST, 1).queryKey, aPage([aRow({ id: 3 })]));
+    served.mockRejectedValueOnce(new Error("down")).mockResolvedValue(aPage([aRow({ id: 3, score: 0.5 })]));
+    publish("training", { model_version: 2 });
+    await pass();
+    expect(rows(1)[0]?.score).toBe(0.5);
+    expect(rows()[0]?.score).toBeNull();
+    served.mockResolvedValue(aPage([aRow({ id: 1, score: 0.7 }), aRow({ id: 2 })]));
+    await pass(2_000);
+    expect(rows()[0]?.score).toBe(0.7);
+    expect(served).toHaveBeenCalledTimes(3);
+  });
+
+  it("reads what is in sight while a stage goes on, once for many that it tells of", async () => {
+    const { publish, rows, client } = shown();
+    const outOfSight = pageQuery(LIST, 1).queryKey;
+    client.setQueryData(outOfSight, aPage([aRow({ id: 3 })]));
+    const observer = new QueryObserver(client, pageQuery(LIST, 0));
+    const stop = observer.subscribe(() => undefined);
+    served.mockResolvedValue(aPage([aRow({ id: 1, predicted_version: 1 }), aRow({ id: 2 })]));
+    publish("stage", { stage: "evaluate", done: 1 });
+    publish("stage", { stage: "evaluate", done: 2 });
+    await pass();
+    expect(served).not.toHaveBeenCalled();
+    await pass(6_000);
+    expect(rows()[0]?.predicted_version).toBe(1);
+    expect(served).toHaveBeenCalledTimes(1);
+    expect(client.getQueryState(outOfSight)?.isInvalidated).toBe(true);
+    stop();
+  });
+
+  it("shows the shapes that come to a list that was empty", async () => {
+    const { result, publish, rows, client } = shown();
+    client.setQueryData(pageQuery(LIST, 0).queryKey, aPage([]));
+    served.mockResolvedValue(aPage([aRow({ id: 1 })]));
+    publish("job", { state: "done" });
+    await pass();
+    expect(rows().map((row) => row.id)).toEqual([1]);
+    expect(result.current).toBeNull();
   });
 
   it("stops with the room", async () => {

@@ -42,6 +42,10 @@ describe("a page read anew", () => {
     expect(shown.items[1]).toBe(b);
   });
 
+  it("fills a list that was empty", () => {
+    expect(renewed(aPage([]), aPage([a, b]))).toEqual(aPage([a, b]));
+  });
+
   it("is in another order if any shape has another place, or there are more or fewer", () => {
     expect(isReordered(aPage([a, b]), aPage([b, a]))).toBe(true);
     expect(isReordered(aPage([a, b]), aPage([a]))).toBe(true);

@@ -25,8 +25,12 @@ export function isReordered(held: RowPage, fresh: RowPage): boolean {
   );
 }
 
-/** The page as it is shown, with what is known anew of its shapes: none of them moves under the pointer. */
+/**
+ * The page as it is shown, with what is known anew of its shapes: none of them moves under the pointer. Where nothing is
+ * shown nothing can move, so that a list that was empty fills.
+ */
 export function renewed(held: RowPage, fresh: RowPage): RowPage {
+  if (held.n_shapes === 0) return fresh;
   const now = new Map(fresh.items.map((row) => [row.id, row]));
   const items = held.items.map((row) => {
     const known = now.get(row.id);
