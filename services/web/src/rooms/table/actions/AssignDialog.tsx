@@ -10,34 +10,38 @@ import type { ShapeActionProps } from "./shapeAction";
 /** Keeps shapes that wait for one person, or lets anybody have them again. */
 export function AssignDialog({ collectionId, rows, onClose }: ShapeActionProps) {
   const showToast = useToast();
-  const [personId, setPersonId] = useState<number | null>(null);
+  const [personId, setPersonId] = useState<number | null>();
   const ids = [...rows.keys()];
   const assigning = useMutation({
     mutationFn: (person: number | null) => assign(collectionId, ids, person),
     onSuccess: ({ n_places }, person) => {
       onClose();
-      const undo = { label: "Undo", onSelect: () => assigning.mutate(null) };
+      if (n_places === 0) {
+        showToast({ message: "None of these shapes waits in the queue, so nothing changed." });
+        return;
+      }
       const words =
         person === null ? "may be had by anybody" : n_places === 1 ? "is assigned" : "are assigned";
-      if (n_places === 0)
-        showToast({ message: "None of these shapes waits in the queue, so nothing changed." });
-      else {
-        const message = `${count(n_places, "waiting label")} ${words}`;
-        showToast({ message, tone: "good", ...(person === null ? {} : { action: undo }) });
-      }
+      showToast({ message: `${count(n_places, "waiting label")} ${words}`, tone: "good" });
     },
   });
   return (
     <ActionDialog
       title={`Assign ${count(rows.size, "shape")}`}
-      verb="Assign"
+      verb={personId === null ? "Let anybody have them" : "Assign"}
+      isReady={personId !== undefined}
       isBusy={assigning.isPending}
       error={assigning.error}
-      onConfirm={() => assigning.mutate(personId)}
+      onConfirm={() => personId !== undefined && assigning.mutate(personId)}
       onClose={onClose}
     >
       <PersonChoice label="To" personId={personId} onChange={setPersonId} />
-      <p>Nobody else gets them from the queue. Shapes that do not wait in the queue are left as they are.</p>
+      <p>
+        {personId === null
+          ? "Whoever is next gets them from the queue."
+          : "Nobody else gets them from the queue."}{" "}
+        Whose they are now is not kept. Shapes that do not wait in the queue are left as they are.
+      </p>
     </ActionDialog>
   );
 }
