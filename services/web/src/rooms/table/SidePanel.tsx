@@ -1,7 +1,7 @@
 import { X } from "lucide-react";
 import { type ReactNode, useCallback, useMemo } from "react";
 import { useHasRole } from "../../app/session/MeContext";
-import { IconButton, useToast } from "../../components";
+import { IconButton } from "../../components";
 import { MapPanel } from "../../map/MapPanel";
 import { PartsPanel } from "../../parts/PartsPanel";
 import { ReviewsPanel } from "../../reviews/ReviewsPanel";
@@ -56,20 +56,13 @@ export function SidePanel({ collectionId, list, state, selection }: SidePanelPro
 
 /** Selects shapes that were picked elsewhere, whose rows may not be on screen. */
 function useChoice(list: RowList, { take, none }: SelectionState) {
-  const showToast = useToast();
   return useCallback(
-    async (shapeIds: readonly number[], isAdding: boolean) => {
-      if (shapeIds.length === 0) {
-        if (!isAdding) none();
-        return;
-      }
-      try {
-        const rows = await fetchNamedRows(list, shapeIds.slice(0, MAX_CHOSEN));
-        take(rows, isAdding, Math.max(0, shapeIds.length - MAX_CHOSEN));
-      } catch (error) {
-        showToast({ message: error instanceof Error ? error.message : String(error), tone: "bad" });
-      }
+    (shapeIds: readonly number[], isAdding: boolean) => {
+      if (shapeIds.length > 0) {
+        const nMore = Math.max(0, shapeIds.length - MAX_CHOSEN);
+        take(fetchNamedRows(list, shapeIds.slice(0, MAX_CHOSEN)), isAdding, nMore);
+      } else if (!isAdding) none();
     },
-    [list, take, none, showToast],
+    [list, take, none],
   );
 }

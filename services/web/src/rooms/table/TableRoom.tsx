@@ -3,15 +3,17 @@ import { useCallback, useEffect, useMemo, useState } from "react";
 import { useLocation } from "wouter";
 import { partsQuery } from "../../api/queries";
 import { RoomHeading } from "../../app/RoomHeading";
-import { Button } from "../../components";
+import { Button, useToast } from "../../components";
+import { whole } from "../../components/numbers";
 import { workAddress } from "../workbench/workAddress";
 import { MAX_OPEN } from "./actions/limits";
 import { SelectionBar } from "./actions/SelectionBar";
 import type { TileLook } from "./grid/ShapeTile";
+import { changeWords } from "./live/listChange";
 import { useLiveRows } from "./live/useLiveRows";
 import type { ShapeRow } from "./rows/shapeRows";
 import { listKey, ordersQuery } from "./rows/tableQueries";
-import { useRange } from "./rows/useRange";
+import { useListReader } from "./rows/useListReader";
 import { useShapeRows } from "./rows/useShapeRows";
 import { ShapeList, useWindow } from "./ShapeList";
 import { SidePanel } from "./SidePanel";
@@ -20,6 +22,7 @@ import styles from "./TableRoom.module.css";
 import { FilterChips } from "./toolbar/FilterChips";
 import { TableToolbar } from "./toolbar/TableToolbar";
 import { TrainingLine } from "./toolbar/TrainingLine";
+import { listName } from "./view/leftPlaces";
 import { NO_FILTERS } from "./view/tableView";
 import { useTableView } from "./view/useTableView";
 
@@ -35,9 +38,8 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
   );
   const [window, onWindow] = useWindow();
   const rows = useShapeRows(list, window.first, window.last);
-  const isReordered = useLiveRows(list);
-  const readRange = useRange(list);
-  const selection = useSelection(readRange);
+  const change = useLiveRows(list);
+  const selection = useSelection(list, useListReader(list));
   const look = useTileLook(collectionId, view);
   const open = useOpen(collectionId);
   const client = useQueryClient();
@@ -55,8 +57,12 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
     }
     refresh(shown); // the same selection, unless one of its shapes has changed
   });
-  // biome-ignore lint/correctness/useExhaustiveDependencies: another list begins with nothing chosen
-  useEffect(() => none(), [view.filters, collectionId]);
+  const onActed = (shapeIds: readonly number[]) => {
+    selection.setDone(shapeIds);
+    if (filters.state === null) return;
+    none();
+    showNew(); // what is in another state now leaves a list of those in one, so that the next ones can be chosen
+  };
 
   return (
     <div className={styles.room}>
@@ -68,21 +74,21 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
           <TrainingLine collectionId={collectionId} />
         </div>
         <section className={styles.list} aria-label="List of shapes">
-          {isReordered && (
+          {change && (
             <div className={styles.reordered} role="status">
-              <span>The order has changed</span>
+              <span>{changeWords(change)}</span>
               <Button size="small" variant="primary" onClick={showNew}>
                 Show
               </Button>
             </div>
           )}
           <ShapeList
-            key={JSON.stringify([list.filters, list.order, list.descending])}
+            key={listName(list)}
             {...{ list, rows, look, selection, onWindow }}
             onOpen={open}
             onClearFilters={() => state.filter(NO_FILTERS)}
           />
-          <SelectionBar collectionId={collectionId} selection={selection} onOpen={open} />
+          <SelectionBar {...{ collectionId, selection, onActed }} onOpen={open} />
         </section>
       </div>
       <SidePanel {...{ collectionId, list, state, selection }} />
@@ -114,11 +120,16 @@ function digest(text: string): string {
 
 function useOpen(collectionId: number): (rows: readonly ShapeRow[]) => void {
   const [, navigate] = useLocation();
+  const showToast = useToast();
   return useCallback(
     (rows) => {
       const ids = rows.slice(0, MAX_OPEN).map((row) => row.id);
+      if (rows.length > MAX_OPEN) {
+        const message = `The workbench takes ${MAX_OPEN} shapes at a time: the first ${MAX_OPEN} of ${whole(rows.length)} are open`;
+        showToast({ message });
+      }
       navigate(workAddress(collectionId, ids));
     },
-    [collectionId, navigate],
+    [collectionId, navigate, showToast],
   );
 }

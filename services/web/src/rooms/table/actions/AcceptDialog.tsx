@@ -9,7 +9,7 @@ import { accept } from "./actionRequests";
 import type { ShapeActionProps } from "./shapeAction";
 
 /** Makes a model's labels those of many shapes, and has a few of them labelled by people who are told nothing. */
-export function AcceptDialog({ collectionId, rows, teller, onClose }: ShapeActionProps) {
+export function AcceptDialog({ collectionId, rows, teller, onActed, onClose }: ShapeActionProps) {
   const client = useQueryClient();
   const [labels, setLabels] = useState<ModelLabels>("refined");
   const [asked, setAsked] = useState<number | null>(null);
@@ -17,15 +17,10 @@ export function AcceptDialog({ collectionId, rows, teller, onClose }: ShapeActio
   const rechecks = asked ?? suggestedRechecks(fit.length);
   const nLeft = rows.size - fit.length;
   const accepting = useMutation({
-    mutationFn: () =>
-      accept(
-        collectionId,
-        fit.map((row) => row.id),
-        labels,
-        rechecks,
-      ),
-    onSuccess: (outcome) => {
+    mutationFn: (shapeIds: readonly number[]) => accept(collectionId, shapeIds, labels, rechecks),
+    onSuccess: (outcome, shapeIds) => {
       onClose();
+      onActed(shapeIds);
       void client.invalidateQueries({ queryKey: ["accepts", collectionId] });
       const blind =
         outcome.rechecks > 0
@@ -42,7 +37,7 @@ export function AcceptDialog({ collectionId, rows, teller, onClose }: ShapeActio
       isReady={fit.length > 0 && isValid}
       isBusy={accepting.isPending}
       error={accepting.error}
-      onConfirm={() => accepting.mutate()}
+      onConfirm={() => accepting.mutate(fit.map((row) => row.id))}
       onClose={onClose}
     >
       <Segmented

@@ -2,7 +2,7 @@ import { ClipboardCheck, ListRestart, PenTool, Undo2, UserRoundPlus, X } from "l
 import { type ReactNode, useState } from "react";
 import { useHasRole } from "../../../app/session/MeContext";
 import { Button, IconButton } from "../../../components";
-import { count, whole } from "../../../components/numbers";
+import { whole } from "../../../components/numbers";
 import type { ShapeRow } from "../rows/shapeRows";
 import { MAX_CHOSEN } from "../selection/selection";
 import type { SelectionState } from "../selection/useSelection";
@@ -26,11 +26,12 @@ type Action = keyof typeof DIALOGS;
 export interface SelectionBarProps {
   readonly collectionId: number;
   readonly selection: SelectionState;
+  onActed(shapeIds: readonly number[]): void;
   onOpen(rows: readonly ShapeRow[]): void;
 }
 
 /** How many shapes are selected, and what can be done with them. */
-export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarProps) {
+export function SelectionBar({ collectionId, selection, onActed, onOpen }: SelectionBarProps) {
   const [asked, setAsked] = useState<{ action: Action; rows: ReadonlyMap<number, ShapeRow> } | null>(null);
   const isReviewer = useHasRole("reviewer");
   const isOperator = useHasRole("operator");
@@ -42,7 +43,6 @@ export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarPr
     </Button>
   );
   const Asked = asked && DIALOGS[asked.action];
-  const canOpen = chosen.size <= MAX_OPEN;
   return (
     <>
       {chosen.size > 0 && (
@@ -60,11 +60,9 @@ export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarPr
               size="small"
               variant="primary"
               icon={<PenTool />}
-              disabled={!canOpen}
-              title={canOpen ? undefined : `The workbench takes up to ${count(MAX_OPEN, "shape")}`}
               onClick={() => onOpen([...chosen.values()])}
             >
-              Open
+              {chosen.size > MAX_OPEN ? `Open the first ${MAX_OPEN}` : "Open"}
             </Button>
             {isReviewer && button("accept", <ClipboardCheck />, "Accept…")}
             {isReviewer && button("sendBack", <Undo2 />, "Send back…")}
@@ -82,7 +80,7 @@ export function SelectionBar({ collectionId, selection, onOpen }: SelectionBarPr
         </div>
       )}
       {Asked && (
-        <Asked collectionId={collectionId} rows={asked.rows} teller={teller} onClose={() => setAsked(null)} />
+        <Asked {...{ collectionId, teller, onActed }} rows={asked.rows} onClose={() => setAsked(null)} />
       )}
       {teller.dialog}
     </>

@@ -9,13 +9,14 @@ import type { ShapeActionProps } from "./shapeAction";
 const MAX_NOTE = 2_000;
 
 /** Sends the newest labels of shapes back, with a note for whoever gets them next. */
-export function SendBackDialog({ collectionId, rows, teller, onClose }: ShapeActionProps) {
+export function SendBackDialog({ collectionId, rows, teller, onActed, onClose }: ShapeActionProps) {
   const [note, setNote] = useState("");
   const [forAuthor, setForAuthor] = useState(false);
   const sending = useMutation({
     mutationFn: () => sendBack(collectionId, [...rows.keys()], note.trim(), forAuthor),
     onSuccess: (outcome) => {
       onClose();
+      onActed([...rows.keys()]);
       teller.tell(outcome, rows, "sent back");
     },
   });

@@ -6,5 +6,7 @@ export interface ShapeActionProps {
   readonly collectionId: number;
   readonly rows: ReadonlyMap<number, ShapeRow>;
   readonly teller: OutcomeTeller;
+  /** These may have another state now, or were refused it. */
+  onActed(shapeIds: readonly number[]): void;
   onClose(): void;
 }

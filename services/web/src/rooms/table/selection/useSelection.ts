@@ -1,8 +1,10 @@
 /** The selection of the table, and what pointer and keyboard do to it. */
-import { useCallback, useMemo, useState } from "react";
+import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { useToast } from "../../../components";
 import type { ShapeRow } from "../rows/shapeRows";
-import type { ReadRange } from "../rows/useRange";
+import type { RowList } from "../rows/tableQueries";
+import type { ListReader } from "../rows/useListReader";
+import { leftPlace } from "../view/leftPlaces";
 import {
   chooseAll,
   chooseNone,
@@ -23,49 +25,84 @@ export interface SelectionState {
   toggle(row: ShapeRow, place: number): void;
   /** From where a range begins to here; instead of what is chosen, or besides it. */
   range(place: number, isAdding: boolean): void;
+  /** All of the list; of one of shapes in a state, those that are still in it and were not acted on. */
   all(nShapes: number): void;
   move(place: number): void;
   none(): void;
-  /** These rows, from elsewhere, as from the map; `nMore`: others that were meant, too. */
-  take(rows: readonly ShapeRow[], isAdding: boolean, nMore: number): void;
+  /** Rows from elsewhere, as from the map; `nMore`: others that were meant, too. */
+  take(rows: Promise<readonly ShapeRow[]>, isAdding: boolean, nMore: number): void;
   refresh(rows: Iterable<ShapeRow>): void;
+  /** These were acted on: `all` has had them. */
+  setDone(shapeIds: readonly number[]): void;
 }
 
-export function useSelection(readRange: ReadRange): SelectionState {
+export function useSelection(list: RowList, reader: ListReader): SelectionState {
   const [selection, setSelection] = useState<Selection>(NOTHING);
   const showToast = useToast();
-  const read = useCallback(
-    (first: number, count: number, then: (rows: readonly ShapeRow[]) => void) => {
-      readRange(first, count).then(then, (error: Error) =>
-        showToast({ message: error.message, tone: "bad" }),
+  const done = useRef(new Set<number>());
+  const nChanges = useRef(0);
+  const { change, read } = useMemo(() => {
+    const change = (next: (held: Selection) => Selection) => {
+      nChanges.current += 1;
+      setSelection(next);
+    };
+    /** Rows may have to be asked for; by then somebody may have chosen something else, and that stays. */
+    const read = <T>(found: Promise<T>, next: (held: Selection, found: T) => Selection) => {
+      nChanges.current += 1;
+      const asked = nChanges.current;
+      const isWanted = () => nChanges.current === asked;
+      found.then(
+        (rows) => isWanted() && change((held) => next(held, rows)),
+        (error: Error) => isWanted() && showToast({ message: error.message, tone: "bad" }),
       );
-    },
-    [readRange, showToast],
-  );
+    };
+    return { change, read };
+  }, [showToast]);
+
+  const { collectionId, filters } = list;
+  const { state } = filters;
+  // Another list begins with nothing chosen; the same shapes in another order are chosen still.
+  // biome-ignore lint/correctness/useExhaustiveDependencies: these tell lists of other shapes apart
+  useEffect(() => {
+    done.current.clear();
+    change(chooseNone);
+  }, [collectionId, filters, change]);
+  // Places are those of a list: a range does not begin in the one before.
+  useEffect(() => change((held) => moveTo(held, leftPlace(list).cursor)), [list, change]);
+
   const { anchor } = selection;
   const actions = useMemo(
     () => ({
-      only: (row: ShapeRow, place: number) => setSelection((held) => chooseOnly(held, row, place)),
-      toggle: (row: ShapeRow, place: number) => setSelection((held) => toggle(held, row, place)),
+      only: (row: ShapeRow, place: number) => change((held) => chooseOnly(held, row, place)),
+      toggle: (row: ShapeRow, place: number) => change((held) => toggle(held, row, place)),
       range: (place: number, isAdding: boolean) => {
         const { first, count, nMore } = span(anchor, place);
         // The keyboard is there at once; the rows between may have to be read first.
-        setSelection((held) => ({ ...held, cursor: place }));
-        read(first, count, (rows) =>
-          setSelection((held) => chooseRange(held, rows, { cursor: held.cursor, isAdding, nMore })),
+        change((held) => ({ ...held, cursor: place }));
+        read(reader.range(first, count), (held, rows) =>
+          chooseRange(held, rows, { cursor: held.cursor, isAdding, nMore }),
         );
       },
-      all: (nShapes: number) =>
-        read(0, Math.min(nShapes, MAX_CHOSEN), (rows) =>
-          setSelection((held) => chooseAll(held, rows, nShapes)),
-        ),
-      move: (place: number) => setSelection((held) => moveTo(held, place)),
-      none: () => setSelection(chooseNone),
-      take: (rows: readonly ShapeRow[], isAdding: boolean, nMore: number) =>
-        setSelection((held) => chooseRange(held, rows, { cursor: held.cursor, isAdding, nMore })),
-      refresh: (rows: Iterable<ShapeRow>) => setSelection((held) => refreshed(held, rows)),
+      all: (nShapes: number) => {
+        const isLeft = (row: ShapeRow) =>
+          state === null || (row.state === state && !done.current.has(row.id));
+        read(reader.firstOf(MAX_CHOSEN, isLeft), (held, { rows, nPassed }) =>
+          chooseAll(held, rows, nShapes - nPassed),
+        );
+      },
+      move: (place: number) => change((held) => moveTo(held, place)),
+      none: () => change(chooseNone),
+      take: (rows: Promise<readonly ShapeRow[]>, isAdding: boolean, nMore: number) =>
+        read(rows, (held, found) => chooseRange(held, found, { cursor: held.cursor, isAdding, nMore })),
     }),
-    [anchor, read],
+    [anchor, state, reader, change, read],
   );
-  return useMemo(() => ({ selection, ...actions }), [selection, actions]);
+  const refresh = useCallback(
+    (rows: Iterable<ShapeRow>) => setSelection((held) => refreshed(held, rows)),
+    [],
+  );
+  const setDone = useCallback((shapeIds: readonly number[]) => {
+    for (const id of shapeIds) done.current.add(id);
+  }, []);
+  return useMemo(() => ({ selection, ...actions, refresh, setDone }), [selection, actions, refresh, setDone]);
 }
