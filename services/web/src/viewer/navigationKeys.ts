@@ -32,7 +32,8 @@ export class NavigationKeys {
   readonly #pressed = (event: KeyboardEvent) => {
     const action = ACTIONS[event.key];
     const isElsewhere = event.target !== this.#view.element || event.ctrlKey || event.metaKey || event.altKey;
-    if (action === undefined || isElsewhere) return;
+    const isDigit = event.code.startsWith("Digit"); // "+" is Shift+1 on some keyboards, "-" is 6 on others
+    if (action === undefined || isElsewhere || isDigit) return;
     event.preventDefault();
     action(this.#view, event.shiftKey);
   };

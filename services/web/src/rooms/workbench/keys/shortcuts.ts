@@ -27,7 +27,7 @@ export interface WorkbenchActions {
 }
 
 export interface Shortcut {
-  /** `event.key` in lower case, or `event.code` for digits, with modifiers before it. */
+  /** `event.key` in lower case, with modifiers before it. */
   readonly keys: readonly string[];
   /** As it is shown. */
   readonly shown: string;
@@ -184,22 +184,38 @@ export const SHORTCUTS: readonly Shortcut[] = [
 ];
 
 const BY_KEY = new Map(SHORTCUTS.flatMap((shortcut) => shortcut.keys.map((key) => [key, shortcut] as const)));
+/** What many keyboards have only behind AltGr, which a Mac calls Option. */
+const BEHIND_ALT: readonly string[] = ["[", "]"];
+/** Keys that are also known by their place: Shift+1 is "!" on some keyboards, and "[" stands nowhere by itself on others. */
+const PLACES: ReadonlyMap<string, string> = new Map([
+  ...DIGITS.flatMap((digit) => [[`Digit${digit}`, digit] as const, [`Numpad${digit}`, digit] as const]),
+  ["BracketLeft", "["],
+  ["BracketRight", "]"],
+]);
 
-type Pressed = Pick<KeyboardEvent, "key" | "code" | "ctrlKey" | "metaKey" | "shiftKey" | "altKey">;
+type Pressed = Pick<
+  KeyboardEvent,
+  "key" | "code" | "ctrlKey" | "metaKey" | "shiftKey" | "altKey" | "getModifierState"
+>;
+type Found = { shortcut: Shortcut; key: string };
 
 /** The shortcut that an event means, with the key as the table writes it. */
-export function shortcutOf(event: Pressed): { shortcut: Shortcut; key: string } | null {
-  if (event.altKey) return null;
-  const digit = /^(?:Digit|Numpad)(\d)$/.exec(event.code)?.[1]; // Shift+1 is "!" on some keyboards, "+" on others
-  const key = [
-    (event.ctrlKey || event.metaKey) && "ctrl+",
-    event.shiftKey && "shift+",
-    digit ?? event.key.toLowerCase(),
-  ]
-    .filter(Boolean)
-    .join("");
+export function shortcutOf(event: Pressed): Found | null {
+  if (event.altKey || event.getModifierState("AltGraph")) {
+    return BEHIND_ALT.includes(event.key) ? found(event.key) : null; // Windows takes AltGr for Ctrl and Alt
+  }
+  const modifiers = `${event.ctrlKey || event.metaKey ? "ctrl+" : ""}${event.shiftKey ? "shift+" : ""}`;
+  return found(modifiers + event.key.toLowerCase()) ?? found(modifiers + placed(event));
+}
+
+function found(key: string): Found | null {
   const shortcut = BY_KEY.get(key);
   return shortcut === undefined ? null : { shortcut, key };
+}
+
+function placed({ key, code }: Pressed): string {
+  const isNearer = key === "+" && code === "BracketRight"; // German, and of a view
+  return isNearer ? key : (PLACES.get(code) ?? key);
 }
 
 /** What is pressed for something, for tooltips. */
