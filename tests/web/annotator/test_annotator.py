@@ -260,7 +260,7 @@ def test_a_view_shows_other_labels_and_how_unsure_the_model_is_beside_the_draft(
 
 
 def test_the_edges_of_faces_are_shown_on_demand(bench) -> None:
-    bench.page.keyboard.press("g")
+    bench.page.keyboard.press("t")
     edges = bench.page.get_by_role("button", name="Edges of faces")
     expect(edges).to_have_attribute("aria-pressed", "true")
     with_edges = bench.view.screenshot()

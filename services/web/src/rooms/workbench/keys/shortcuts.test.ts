@@ -68,6 +68,10 @@ describe("keys", () => {
     expect(shortcutOf(pressed("{", { code: "Digit7", isAltGraph: true }))).toBeNull();
   });
 
+  it("leave G to rooms, whose keys it leads", () => {
+    expect(shortcutOf(pressed("g"))).toBeNull();
+  });
+
   it("show the sheet by ?, whose keyboard places it differently", () => {
     expect(ran(pressed("?", { shiftKey: true }), "showKeys")).toEqual([]);
     expect(ran(pressed("?"), "showKeys")).toEqual([]);

@@ -137,8 +137,8 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (act) => act.toggleUncertainty(),
   },
   {
-    keys: ["g"],
-    shown: "G",
+    keys: ["t"],
+    shown: "T",
     what: "Edges of faces",
     group: "View",
     run: (act) => act.toggleEdges(),
