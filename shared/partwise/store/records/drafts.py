@@ -36,7 +36,7 @@ class NewDraft:
 class Draft:
     """A person's work on a shape: open while `closed_at` is None, whatever becomes of the lease.
 
-    slot, round, purpose : of the lease it was opened or last resumed under.
+    slot, round, purpose : of the person's last lease of the shape.
     n_strokes : strokes on record, which is the sequence of the next one.
     seen_revision : the shape's newest shown labels that the person knows of; newer ones refuse the confirmation.
     labels_sha256 : checksum of what was confirmed.

@@ -34,6 +34,7 @@ from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import Draft, DraftOutcome, LeasePurpose, NewDraft, StoredStroke
 from partwise.store.sql import leases
 from partwise.store.sql.dialect import batches
+from partwise.store.sql.draft_binding import bind_draft
 
 _FOLLOWING = 1_000  # strokes; more at once are rare
 
@@ -41,16 +42,14 @@ _FOLLOWING = 1_000  # strokes; more at once are rare
 def open_draft(connection: Connection, lease_id: int, person_id: int, new: NewDraft, now: datetime) -> Draft:
     leases.person_name(connection, person_id, for_update=True)
     lease = leases.own_active(connection, lease_id, person_id)
-    of_lease = {"slot": lease.slot, "round": lease.round, "purpose": lease.purpose.value}
-    is_open = (
-        (t.draft.c.person_id == person_id) & (t.draft.c.shape_id == lease.shape_id) & t.draft.c.closed_at.is_(None)
-    )
-    resumed = connection.execute(update(t.draft).where(is_open).values(of_lease).returning(t.draft)).first()
+    resumed = bind_draft(connection, lease)
     if resumed is not None:
         return to_draft(resumed)
     _refuse_foreign_base(connection, lease.shape_id, new)
     values = {
-        **of_lease,
+        "slot": lease.slot,
+        "round": lease.round,
+        "purpose": lease.purpose.value,
         "collection_id": lease.collection_id,
         "shape_id": lease.shape_id,
         "person_id": person_id,

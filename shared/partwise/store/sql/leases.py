@@ -22,6 +22,7 @@ from partwise.store.records import (
 )
 from partwise.store.sql.collections import append_audit
 from partwise.store.sql.dialect import batches, insert_for
+from partwise.store.sql.draft_binding import bind_draft
 from partwise.store.sql.events import append_events
 
 _EXPIRED_AT_ONCE = 100  # the next claims find the others: a claim must not grow with how many left
@@ -73,7 +74,7 @@ def acquire(
 ) -> Lease | None:
     """A new lease; None if the place or the shape has become another's, or this person's, in this very moment.
 
-    values : collection_id, shape_id, slot, round, person_id, purpose.
+    values : collection_id, shape_id, slot, round, person_id, purpose. The person's open draft goes on under them.
     """
     row = {
         **values,
@@ -84,7 +85,11 @@ def acquire(
     }
     statement = insert_for(connection, t.lease).values(row).on_conflict_do_nothing().returning(t.lease)
     found = connection.execute(statement).first()
-    return None if found is None else to_lease(found)
+    if found is None:
+        return None
+    acquired = to_lease(found)
+    bind_draft(connection, acquired)
+    return acquired
 
 
 def expire(connection: Connection, person_id: int, now: datetime) -> list[NewEvent]:

@@ -11,6 +11,7 @@ from partwise.labels.stroke_json import stroke_from_document
 from partwise.store.catalog import Catalog
 from partwise.store.records import (
     DraftOutcome,
+    LeasePurpose,
     NewConfirmation,
     NewDraft,
     RevisionKind,
@@ -47,6 +48,18 @@ class DraftConformance:
         assert blank_draft(catalog, again) == before
         assert catalog.open_drafts(lease.person_id) == [before]
         assert catalog.drafts_of_shape(lease.shape_id) == [before]
+
+    def test_a_draft_goes_on_under_the_next_lease(self, catalog: Catalog) -> None:
+        collection, lease = leased_shape(catalog)
+        draft = blank_draft(catalog, lease)
+        catalog.release_lease(lease.id, lease.person_id)
+        catalog.update_collection_settings(collection.id, {"labels_per_shape": 2})
+        catalog.fill_queue(collection.id)
+        again = claim(catalog, collection, catalog.get_person("ann"))
+        bound = catalog.draft(draft.id)
+        assert again.purpose is LeasePurpose.INDEPENDENT
+        assert (bound.slot, bound.round, bound.purpose) == (again.slot, again.round, again.purpose)
+        assert catalog.awaited_answers(draft.id) == ([], 1)
 
     def test_sending_again_adds_nothing(self, catalog: Catalog) -> None:
         _, lease = leased_shape(catalog)
