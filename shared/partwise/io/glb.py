@@ -15,6 +15,7 @@ from partwise.mesh import TriMesh
 
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_MAX_JSON_MARKS = 5_000_000  # each may be a value that takes many times its bytes
 _LARGEST_TRANSFORM = 1e12  # map coordinates fit; what a damaged file holds does not
 
 
@@ -32,7 +33,9 @@ def parse_glb(data: bytes, limits: ReadLimits) -> TriMesh:
     document, binary_chunk = unpack_glb(data)
     try:
         return _read_scene(document, GltfAccessors(document, binary_chunk), limits)
-    except (KeyError, IndexError, TypeError, AttributeError, OverflowError) as error:
+    except FileFormatError:
+        raise
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, OverflowError) as error:
         raise FileFormatError(
             f"a GLB's JSON must follow glTF 2.0 but {type(error).__name__} {error} came up; export the file again"
         ) from error
@@ -103,8 +106,11 @@ def unpack_glb(data: bytes) -> tuple[dict[str, Any], bytes]:
             )
         found.setdefault(kind, data[offset + 8 : offset + 8 + n_bytes])
         offset += 8 + n_bytes
+    text = found.get(_JSON_CHUNK, b"")
+    if sum(map(text.count, (b",", b"[", b"{"))) > _MAX_JSON_MARKS:
+        raise FileFormatError(f"a GLB's JSON may have {_MAX_JSON_MARKS} commas and brackets; simplify the scene")
     try:
-        document = json.loads(found.get(_JSON_CHUNK, b""))
+        document = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise FileFormatError(f"a GLB file must hold a JSON chunk but {error}; export the file again") from error
     if not isinstance(document, dict):
@@ -120,7 +126,7 @@ def _read_scene(document: dict[str, Any], accessors: GltfAccessors, limits: Read
         for primitive in document["meshes"][mesh_index]["primitives"]:
             if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
                 continue
-            V, F = _read_primitive(primitive, accessors)
+            V, F = _read_primitive(primitive, accessors, limits)
             n_faces += len(F)
             vertices.append(V @ transform[:3, :3].T + transform[:3, 3])
             mirrored = np.linalg.det(transform[:3, :3]) < 0
@@ -187,10 +193,13 @@ def _numbers(node: dict[str, Any], key: str, default: Float[np.ndarray, " n"]) -
 
 
 def _read_primitive(
-    primitive: dict[str, Any], accessors: GltfAccessors
+    primitive: dict[str, Any], accessors: GltfAccessors, limits: ReadLimits
 ) -> tuple[Float[np.ndarray, "n 3"], Int[np.ndarray, "m 3"]]:
     if "KHR_draco_mesh_compression" in primitive.get("extensions", {}):
         raise FileFormatError("geometry must be uncompressed but uses Draco compression; export without it")
+    limits.check_vertices(accessors.count(primitive["attributes"]["POSITION"]))
+    if "indices" in primitive:
+        limits.check_faces(accessors.count(primitive["indices"]) // 3)
     V = accessors.read(primitive["attributes"]["POSITION"]).astype(np.float64)
     if V.shape[1] != 3:
         raise FileFormatError(f"positions must have 3 columns but have {V.shape[1]}; export the file again")

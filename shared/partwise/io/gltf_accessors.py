@@ -18,12 +18,17 @@ class GltfAccessors:
     Raises
     ------
     FileFormatError : from every method, where the document points outside its data, at another file, or at compression.
-    KeyError, IndexError, TypeError : where the document's own structure is broken; the caller names the file.
+    LookupError, TypeError, ValueError, OverflowError : where the document's own structure is broken; the caller names
+        the file.
     """
 
     def __init__(self, document: dict[str, Any], binary_chunk: bytes) -> None:
         self._document = document
         self._binary_chunk = binary_chunk
+
+    def count(self, index: int) -> int:
+        """Records of accessor `index`, as it says."""
+        return int(self._accessor(index)["count"])
 
     def read(self, index: int) -> np.ndarray:
         """Accessor `index` as a (count, columns) array of its component type, or float64 if it is normalised."""

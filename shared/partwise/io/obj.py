@@ -1,19 +1,18 @@
 """OBJ: `v` and `f` lines. Texture coordinates, normals, groups and materials are read over, so they split nothing."""
 
 import re
-from itertools import chain
+from array import array
 
 import numpy as np
 from jaxtyping import Int
 
 from partwise.errors import FileFormatError
 from partwise.io.limits import ReadLimits
-from partwise.io.polygons import fan_triangles
-from partwise.io.text import format_rows, numbered_lines, parse_integers, parse_points
+from partwise.io.polygons import PolygonRows, fan_triangles
+from partwise.io.text import format_rows, parse_points
 from partwise.mesh import TriMesh
 
-_CONTINUATION = re.compile(rb"\\\r?\n")
-_NORMAL_AND_TEXTURE = re.compile(rb"/\S*")
+_LINE = re.compile(rb"(?:^|(?<=\r))[^\S\r\n]*([vf])(?![^\s#])([^\r\n#]*)", re.MULTILINE)
 
 
 def parse_obj(data: bytes, limits: ReadLimits) -> TriMesh:
@@ -23,29 +22,38 @@ def parse_obj(data: bytes, limits: ReadLimits) -> TriMesh:
 
     Raises
     ------
-    FileFormatError : no vertex or face lines, a line that does not fit, an index 0 or before the first vertex.
+    FileFormatError : no vertex or face lines, a line that does not fit, an index 0 or before the first vertex, too many
+        vertices or faces.
     """
     if b"\x00" in data[:4096]:
         raise FileFormatError("an OBJ file must be text but has zero bytes; is the suffix right?")
-    lines, numbers = numbered_lines(_CONTINUATION.sub(b" ", data))
-    kind = np.array([_KINDS.get(line.split(None, 1)[0], 0) for line in lines], dtype=np.int8)
-    is_vertex, is_face = kind == 1, kind == 2
-    if not is_vertex.any() or not is_face.any():
+    text = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")  # lines that go on
+    points: list[bytes] = []
+    polygons = PolygonRows(limits, "vertex indices of `f` lines")
+    n_before, starts = array("q"), array("q")
+    for line in _LINE.finditer(text):
+        if line[1] == b"v":
+            points.append(line[2])
+            limits.check_vertices(len(points))
+        else:
+            polygons.take(_corner_tokens(line[2], polygons.n_allowed))
+            n_before.append(len(points))
+            starts.append(line.start())
+    if not points or not polygons:
         raise FileFormatError(
-            f"an OBJ file must have `v` and `f` lines but has {int(is_vertex.sum())} and {int(is_face.sum())}; "
+            f"an OBJ file must have `v` and `f` lines but has {len(points)} and {len(polygons)}; "
             "is it empty, truncated or a point cloud?"
         )
-    vertices = parse_points([lines[k][1:] for k in np.flatnonzero(is_vertex)], "`v` lines")
-    face_rows = np.flatnonzero(is_face)
-    text = _NORMAL_AND_TEXTURE.sub(b"", b"\n".join([lines[k][1:] for k in face_rows]))
-    rows = [row.split() for row in text.split(b"\n")]
-    n_corners = np.fromiter(map(len, rows), dtype=np.int64, count=len(rows))
-    limits.check_faces(int(np.maximum(n_corners - 2, 0).sum()))
-    corners = parse_integers(list(chain.from_iterable(rows)), "vertex indices of `f` lines")
-    n_before = np.cumsum(is_vertex)[face_rows]
-    line_of_corner = np.repeat([numbers[k] for k in face_rows], n_corners)
-    corners = _from_zero(corners, np.repeat(n_before, n_corners), line_of_corner)
-    return TriMesh(vertices, fan_triangles(n_corners, corners))
+    n_corners = polygons.n_corners()
+    corners = _from_zero(polygons.corners(), np.repeat(n_before, n_corners))
+    if len(bad := np.flatnonzero(corners < 0)):
+        face = int(np.searchsorted(np.cumsum(n_corners), bad[0], side="right"))
+        index, line_number = int(polygons.corners()[bad[0]]), _line_number(text, starts[face])
+        raise FileFormatError(
+            "an index must name a vertex counted from 1, or back from the line with a minus sign, but line "
+            f"{line_number} has {index} after {n_before[face]} vertices; was the file edited?"
+        )
+    return TriMesh(parse_points(points, "`v` lines"), fan_triangles(n_corners, corners))
 
 
 def format_obj(mesh: TriMesh) -> bytes:
@@ -53,19 +61,20 @@ def format_obj(mesh: TriMesh) -> bytes:
     return (format_rows("v ", mesh.vertices) + format_rows("f ", mesh.faces + 1)).encode("ascii")
 
 
-_KINDS = {b"v": 1, b"f": 2}
+def _corner_tokens(row: bytes, n_allowed: int) -> list[bytes]:
+    """A face's vertex indices, without what follows them after a slash; of too many, one more than are allowed."""
+    tokens = row.split(None, n_allowed + 1)[: n_allowed + 1]
+    return [index for token in tokens if (index := token.partition(b"/")[0])] if b"/" in row else tokens
 
 
-def _from_zero(
-    corners: Int[np.ndarray, " c"], n_before: Int[np.ndarray, " c"], lines: Int[np.ndarray, " c"]
-) -> Int[np.ndarray, " c"]:
-    """OBJ's 1-based or negative indices to 0-based ones; `n_before` counts the vertices above each corner's line."""
-    from_zero = np.where(corners > 0, corners - 1, n_before + corners)
-    bad = (corners == 0) | (from_zero < 0)
-    if bad.any():
-        first = int(np.argmax(bad))
-        raise FileFormatError(
-            f"an index must name a vertex counted from 1, or back from the line with a minus sign, but line "
-            f"{int(lines[first])} has {int(corners[first])} after {int(n_before[first])} vertices; was the file edited?"
-        )
-    return from_zero
+def _from_zero(corners: Int[np.ndarray, " c"], n_before: Int[np.ndarray, " c"]) -> Int[np.ndarray, " c"]:
+    """OBJ's 1-based or negative indices to 0-based ones, −1 or less if they name no vertex.
+
+    n_before : vertices above each corner's line.
+    """
+    return np.where(corners > 0, corners - 1, np.where(corners < 0, n_before + corners, -1))
+
+
+def _line_number(text: bytes, start: int) -> int:
+    """Which line, from 1, begins at this place."""
+    return 1 + text.count(b"\n", 0, start) + text.count(b"\r", 0, start) - text.count(b"\r\n", 0, start)

@@ -1,14 +1,15 @@
 """OFF: a header, vertex lines, face lines. Vertex extras (COFF, NOFF) and face colours are read over."""
 
 import re
+from itertools import islice
 
 import numpy as np
-from jaxtyping import Int, UInt8
+from jaxtyping import UInt8
 
 from partwise.errors import FileFormatError
 from partwise.io.limits import ReadLimits
-from partwise.io.polygons import fan_triangles
-from partwise.io.text import format_rows, numbered_lines, parse_integers, parse_points
+from partwise.io.polygons import PolygonRows, fan_triangles
+from partwise.io.text import format_rows, parse_integers, parse_points, text_lines, whole_numbers
 from partwise.mesh import TriMesh
 
 # ModelNet glues the first count to the magic word ("OFF490 518 0"), so no space is asked for.
@@ -20,30 +21,30 @@ def parse_off(data: bytes, limits: ReadLimits) -> TriMesh:
 
     Raises
     ------
-    FileFormatError : wrong magic, truncated, or a line that does not fit.
+    FileFormatError : wrong magic, truncated, a line that does not fit, too many vertices or faces.
     """
-    lines, numbers = numbered_lines(data)
-    magic = _MAGIC.match(lines[0]) if lines else None
+    lines = text_lines(data)
+    _, first = next(lines, (0, b""))
+    magic = _MAGIC.match(first)
     if magic is None:
-        start = lines[0][:20].decode("latin-1") if lines else ""
+        start = first[:20].decode("latin-1")
         raise FileFormatError(f"an ASCII OFF file must start with OFF but starts with {start!r}; is the suffix right?")
-    rest = lines[0][magic.end() :]
-    skip = 0 if rest else 1
-    if len(lines) <= skip:
+    _, counts = (0, first[magic.end() :]) if first[magic.end() :] else next(lines, (0, b""))
+    if not counts:
         raise FileFormatError("an OFF file must state its counts after OFF but ends there; is it truncated?")
-    n_vertices, n_faces = _counts(rest or lines[1])
+    n_vertices, n_faces = _counts(counts)
     limits.check_faces(n_faces)
-    body, body_numbers = lines[1 + skip :], numbers[1 + skip :]
-    if len(body) < n_vertices + n_faces:
+    limits.check_vertices(n_vertices)
+    vertices = parse_points((line for _, line in islice(lines, n_vertices)), "vertex lines")
+    polygons = PolygonRows(limits, "face corners")
+    for number, line in islice(lines, n_faces):
+        polygons.take(_corner_tokens(line, number, polygons))
+    if len(vertices) + len(polygons) < n_vertices + n_faces:
         raise FileFormatError(
             f"the header promises {n_vertices} vertices and {n_faces} faces, a line each, "
-            f"but {len(body)} lines follow; is the file truncated?"
+            f"but {len(vertices) + len(polygons)} lines follow; is the file truncated?"
         )
-    vertices = parse_points(body[:n_vertices], "vertex lines")
-    face_lines = slice(n_vertices, n_vertices + n_faces)
-    faces = _parse_faces(body[face_lines], body_numbers[face_lines])
-    limits.check_faces(len(faces))
-    return TriMesh(vertices, faces)
+    return TriMesh(vertices, fan_triangles(polygons.n_corners(), polygons.corners()))
 
 
 def format_off(mesh: TriMesh, face_colours: UInt8[np.ndarray, "m 3"] | None = None) -> bytes:
@@ -54,7 +55,7 @@ def format_off(mesh: TriMesh, face_colours: UInt8[np.ndarray, "m 3"] | None = No
 
 
 def _counts(line: bytes) -> tuple[int, int]:
-    counts = parse_integers(line.split(), "the counts of vertices, faces and edges")
+    counts = parse_integers(line.split(None, 3)[:3], "the counts of vertices, faces and edges")
     if len(counts) < 2 or int(counts.min()) < 0:
         raise FileFormatError(
             f"the counts must be two or three numbers ≥ 0 but are {counts.tolist()}; is the header damaged?"
@@ -62,17 +63,13 @@ def _counts(line: bytes) -> tuple[int, int]:
     return int(counts[0]), int(counts[1])
 
 
-def _parse_faces(lines: list[bytes], numbers: list[int]) -> Int[np.ndarray, "m 3"]:
-    """Triangles of face lines: a corner count, that many indices, and whatever colour follows."""
-    rows = [line.split() for line in lines]
-    n_corners = parse_integers([row[0] for row in rows], "corner counts of faces")
-    n_columns = np.fromiter(map(len, rows), dtype=np.int64, count=len(rows))
-    short = n_columns < n_corners + 1
-    if short.any():
-        row = int(np.argmax(short))
+def _corner_tokens(line: bytes, number: int, polygons: PolygonRows) -> list[bytes]:
+    """Corners of a face line: their number, that many indices, and whatever colour follows."""
+    stated, *tokens = line.split(None, polygons.n_allowed + 1)  # the last piece may be all the rest of the line
+    n_corners = whole_numbers([stated], "corner counts of faces")[0]
+    polygons.check(n_corners)
+    if len(tokens) < n_corners:
         raise FileFormatError(
-            f"line {numbers[row]} promises {int(n_corners[row])} corners but has {int(n_columns[row]) - 1}; "
-            "is the file truncated?"
+            f"line {number} promises {n_corners} corners but has {len(tokens)}; is the file truncated?"
         )
-    tokens = [token for row, n in zip(rows, n_corners.tolist(), strict=True) for token in row[1 : n + 1]]
-    return fan_triangles(n_corners, parse_integers(tokens, "face corners"))
+    return tokens[: max(n_corners, 0)]

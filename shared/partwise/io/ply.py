@@ -10,6 +10,7 @@ from partwise.io.polygons import fan_triangles
 from partwise.mesh import TriMesh
 
 _FLOAT64_WHOLE_LIMIT = 2.0**53
+_DEFAULT_LIMITS = ReadLimits()
 _CORNER_NAMES = ("vertex_indices", "vertex_index")
 
 
@@ -18,11 +19,11 @@ def parse_ply(data: bytes, limits: ReadLimits) -> TriMesh:
 
     Raises
     ------
-    FileFormatError : not PLY, truncated, or without vertex positions or faces.
+    FileFormatError : not PLY, truncated, without vertex positions or faces, or over a limit.
     """
     header = parse_header(data)
     _check_declared(header, limits)
-    tables = parse_elements(data, header)
+    tables = parse_elements(data, header, limits)
     vertex = tables["vertex"]
     columns = [vertex.get(axis) for axis in "xyz"]
     if not all(isinstance(column, np.ndarray) for column in columns):
@@ -33,15 +34,16 @@ def parse_ply(data: bytes, limits: ReadLimits) -> TriMesh:
     return TriMesh(np.stack([np.asarray(column, dtype=np.float64) for column in columns], axis=1), faces)
 
 
-def parse_ply_face_property(data: bytes, name: str) -> Int[np.ndarray, " p"]:
+def parse_ply_face_property(data: bytes, name: str, limits: ReadLimits = _DEFAULT_LIMITS) -> Int[np.ndarray, " p"]:
     """One whole number per face as the file has faces, (p,) int64; p exceeds the triangles' number if polygons do.
 
     Raises
     ------
-    FileFormatError : the property is missing, is a list, or holds fractions.
+    FileFormatError : the property is missing, is a list, or holds fractions; the file is over a limit.
     """
     header = parse_header(data)
-    face = parse_elements(data, header).get("face", {})
+    _check_records(header, limits)
+    face = parse_elements(data, header, limits).get("face", {})
     column = face.get(name)
     if not isinstance(column, np.ndarray):
         raise FileFormatError(f"faces must have a number {name!r} but have {sorted(face)}; export the labels into it")
@@ -83,6 +85,17 @@ def _check_declared(header: PlyHeader, limits: ReadLimits) -> None:
         remedy = "expand the strips first" if "tristrips" in declared else "is it a point cloud?"
         raise FileFormatError(f"a PLY mesh must have elements vertex and face but has {sorted(declared)}; {remedy}")
     limits.check_faces(declared["face"].n_records)
+    limits.check_vertices(declared["vertex"].n_records)
+    _check_records(header, limits)
+
+
+def _check_records(header: PlyHeader, limits: ReadLimits) -> None:
+    for element in header.elements:
+        if element.n_records > limits.max_vertices:
+            raise FileFormatError(
+                f"an element may have {limits.max_vertices} records but {element.name[:80]!a} has {element.n_records}; "
+                "drop what is not needed or raise max_faces"
+            )
 
 
 def _corners(face: PlyTable) -> PlyList:

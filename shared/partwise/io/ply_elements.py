@@ -3,12 +3,17 @@
 A list property whose lengths are all equal is read in one go; other files are walked record by record.
 """
 
+from array import array
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from jaxtyping import Int
 
 from partwise.errors import FileFormatError
+from partwise.io.limits import ReadLimits
+from partwise.io.text import text_lines
 
 _TYPES = {
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
@@ -17,6 +22,7 @@ _TYPES = {
 }
 _BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _MAX_HEADER_BYTES = 1 << 20
+_MAX_DIGITS = 18  # of a count; it then fits 64 bits
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +87,7 @@ def parse_header(data: bytes) -> PlyHeader:
                 continue
             case ["format", name, "1.0"] if name in _BYTE_ORDERS:
                 byte_order = _BYTE_ORDERS[name]
-            case ["element", name, count] if count.isdecimal():
+            case ["element", name, count] if count.isdecimal() and len(count) <= _MAX_DIGITS:
                 elements.append((name, int(count), []))
             case ["property", "list", length, value, name] if elements and _TYPES.keys() >= {length, value}:
                 elements[-1][2].append(PlyProperty(name, _TYPES[value], _TYPES[length]))
@@ -94,16 +100,16 @@ def parse_header(data: bytes) -> PlyHeader:
     return PlyHeader(byte_order, tuple(PlyElement(name, n, tuple(p)) for name, n, p in elements), n_bytes)
 
 
-def parse_elements(data: bytes, header: PlyHeader) -> dict[str, PlyTable]:
+def parse_elements(data: bytes, header: PlyHeader, limits: ReadLimits) -> dict[str, PlyTable]:
     """Every element's columns, by name.
 
     Raises
     ------
-    FileFormatError : the data end before the header's counts are met, or hold what is no number.
+    FileFormatError : the data end before the header's counts are met, hold what is no number, or too many numbers.
     """
     if header.byte_order:
         return _parse_binary(data, header)
-    return _parse_ascii(data, header)
+    return _parse_ascii(data, header, limits)
 
 
 def _truncated(element: PlyElement) -> FileFormatError:
@@ -180,8 +186,8 @@ def _read_uniform(
 
 
 def _read_record_by_record(data: bytes, offset: int, element: PlyElement, order: str) -> tuple[PlyTable, int]:
-    lengths: list[list[int]] = [[] for _ in element.properties]
-    values: list[list[bytes]] = [[] for _ in element.properties]
+    lengths = [array("q") for _ in element.properties]
+    values = [bytearray() for _ in element.properties]
     for _ in range(element.n_records):
         for k, p in enumerate(element.properties):
             n = 1
@@ -191,40 +197,46 @@ def _read_record_by_record(data: bytes, offset: int, element: PlyElement, order:
             end = offset + n * np.dtype(p.value_type).itemsize
             if end > len(data):
                 raise _truncated(element)
-            values[k].append(data[offset:end])
+            values[k] += data[offset:end]
             offset = end
     table: PlyTable = {}
     for k, p in enumerate(element.properties):
-        column = np.frombuffer(b"".join(values[k]), order + p.value_type)
+        column = np.frombuffer(values[k], order + p.value_type)
         table[p.name] = PlyList(np.array(lengths[k], dtype=np.int64), column) if p.length_type else column
     return table, offset
 
 
-def _parse_ascii(data: bytes, header: PlyHeader) -> dict[str, PlyTable]:
-    lines = [line for line in data[header.n_bytes :].splitlines() if line.strip()]
-    tables, start = {}, 0
-    for element in header.elements:
-        stop = start + element.n_records
-        if stop > len(lines):
-            raise _truncated(element)
-        tables[element.name] = _ascii_table(lines[start:stop], element)
-        start = stop
-    return tables
+def _parse_ascii(data: bytes, header: PlyHeader, limits: ReadLimits) -> dict[str, PlyTable]:
+    lines = (line for _, line in text_lines(data[header.n_bytes :], comment=None))
+    return {
+        element.name: _ascii_table(islice(lines, element.n_records), element, limits) for element in header.elements
+    }
 
 
-def _ascii_table(lines: list[bytes], element: PlyElement) -> PlyTable:
+def _ascii_table(lines: Iterable[bytes], element: PlyElement, limits: ReadLimits) -> PlyTable:
     """Columns of an element whose records are a line each. Values pass through float64, exact below 2^53."""
-    rows = [line.split() for line in lines]
-    try:
-        flat = np.array([token for row in rows for token in row], dtype=np.float64)
-    except ValueError as error:
-        raise FileFormatError(f"records of {element.name} must be numbers but {error}; is the file damaged?") from error
-    n_tokens = np.fromiter(map(len, rows), dtype=np.int64, count=len(rows))
+    numbers, counts = array("d"), array("q")
+    for line in lines:
+        tokens = line.split(None, limits.max_values - len(numbers))
+        if len(numbers) + len(tokens) > limits.max_values:
+            raise FileFormatError(
+                f"records of {element.name} may have {limits.max_values} numbers in all but have more; "
+                "drop what is not needed or raise max_faces"
+            )
+        try:
+            numbers.extend(map(float, tokens))
+        except ValueError as error:
+            why = f"records of {element.name} must be numbers but {error}; is the file damaged?"
+            raise FileFormatError(why) from error
+        counts.append(len(tokens))
+    if len(counts) < element.n_records:
+        raise _truncated(element)
+    flat, n_tokens = np.array(numbers, dtype=np.float64), np.array(counts, dtype=np.int64)
     row_end = np.cumsum(n_tokens)
     cursor = row_end - n_tokens
     table: PlyTable = {}
     for p in element.properties:
-        lengths = np.ones(len(rows), dtype=np.int64)
+        lengths = np.ones(element.n_records, dtype=np.int64)
         if p.length_type:
             if (cursor >= row_end).any():
                 raise _truncated(element)

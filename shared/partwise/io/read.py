@@ -20,6 +20,8 @@ _PARSERS: dict[str, Callable[[bytes, ReadLimits], TriMesh]] = {
     ".glb": parse_glb,
 }
 MESH_SUFFIXES = frozenset(_PARSERS)
+_STUMBLES = (ValueError, ArithmeticError, LookupError, RecursionError, MemoryError)
+"""What a file that no parser foresaw may bring up: it is the file that is refused, and others go on."""
 _DEFAULT_LIMITS = ReadLimits()
 
 
@@ -52,6 +54,11 @@ def read_mesh(path: Path | str, data: bytes | None = None, limits: ReadLimits = 
         return _PARSERS[suffix](data, limits)
     except (FileFormatError, MeshError) as error:
         raise FileFormatError(f"{path}: {error}") from error
+    except _STUMBLES as error:
+        why = " ".join(f"{type(error).__name__} {error}".split())[:200]
+        raise FileFormatError(
+            f"{path}: a file must hold a mesh but reading it ended in {why}; export it anew"
+        ) from error
 
 
 def read_bytes(path: Path, limits: ReadLimits = _DEFAULT_LIMITS) -> bytes:

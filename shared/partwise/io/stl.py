@@ -12,8 +12,9 @@ from partwise.mesh import TriMesh
 
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEADER_BYTES = 84
-_VERTEX_LINE = re.compile(rb"^\s*vertex\s+(.*?)\s*$", re.MULTILINE | re.IGNORECASE)
-_FACET_WORD = re.compile(rb"^\s*facet\b", re.MULTILINE | re.IGNORECASE)
+# A line each, without blanks that could be shared out between two repetitions in more ways than one.
+_VERTEX_LINE = re.compile(rb"^[^\S\n]*vertex[^\S\n]([^\n]*)", re.MULTILINE | re.IGNORECASE)
+_FACET_WORD = re.compile(rb"^[^\S\n]*facet\b", re.MULTILINE | re.IGNORECASE)
 
 
 def parse_stl(data: bytes, limits: ReadLimits) -> TriMesh:
@@ -63,11 +64,11 @@ def _parse_ascii(data: bytes, limits: ReadLimits) -> np.ndarray:
     """Corners of each facet, (m, 3, 3) float64."""
     if b"endsolid" not in data[-4096:].lower():
         raise FileFormatError("an ASCII STL must end with endsolid but does not; is it truncated?")
-    lines = _VERTEX_LINE.findall(data)
-    n_facets = len(_FACET_WORD.findall(data))
+    n_facets = sum(1 for _ in _FACET_WORD.finditer(data))
+    n_vertices = sum(1 for _ in _VERTEX_LINE.finditer(data))
     limits.check_faces(n_facets)
-    if len(lines) != 3 * n_facets:
+    if n_vertices != 3 * n_facets:
         raise FileFormatError(
-            f"each facet must have 3 vertices but {n_facets} facets have {len(lines)} in all; is the file damaged?"
+            f"each facet must have 3 vertices but {n_facets} facets have {n_vertices} in all; is the file damaged?"
         )
-    return parse_points(lines, "vertex lines").reshape(-1, 3, 3)
+    return parse_points((line[1] for line in _VERTEX_LINE.finditer(data)), "vertex lines").reshape(-1, 3, 3)

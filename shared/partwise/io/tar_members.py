@@ -11,7 +11,8 @@ from typing import BinaryIO
 from partwise.io.archive_limits import CHUNK, ArchiveError, ArchiveLimits
 from partwise.io.limits import MIB
 
-_DAMAGES = (tarfile.TarError, zlib.error, EOFError, OSError, ValueError, OverflowError)
+_DAMAGES = (tarfile.TarError, zlib.error, EOFError, OSError, ValueError, OverflowError, RecursionError)
+# RecursionError : `tarfile` reads a name that a header has for the next one by calling itself
 HEADER_BYTES = MIB
 """That what precedes a member may take: names and notes may be of any length in a tar, and are read as a whole."""
 

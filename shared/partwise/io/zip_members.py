@@ -25,13 +25,21 @@ _END_SIGNATURE, _END64_LOCATOR_SIGNATURE, _END64_SIGNATURE = b"PK\x05\x06", b"PK
 _MAX_COMMENT = 1 << 16
 
 
+@dataclass(slots=True)
+class _Slack:
+    """Bytes by which all members together may still expand further than each may by its size."""
+
+    n_bytes: int = MIB
+
+
 @dataclass(frozen=True, slots=True)
 class ZipMember:
-    """One entry of the directory."""
+    """One entry of the directory. slack : shared by all of the archive."""
 
     archive: zipfile.ZipFile
     info: zipfile.ZipInfo
     limits: ArchiveLimits
+    slack: _Slack
 
     @property
     def name(self) -> str:
@@ -53,17 +61,18 @@ class ZipMember:
         return ""
 
     def chunks(self) -> Iterator[bytes]:
-        n_allowed = MIB + self.limits.max_ratio * self.info.compress_size
+        n_beyond = -self.limits.max_ratio * self.info.compress_size
         try:
             with self.archive.open(self.info) as file:
                 while chunk := file.read(CHUNK):
-                    n_allowed -= len(chunk)
-                    if n_allowed < 0:
+                    n_beyond += len(chunk)
+                    if n_beyond > self.slack.n_bytes:
                         raise FileFormatError(
                             f"a member may expand {self.limits.max_ratio} times but this one expands further; "
                             "archive it anew"
                         )
                     yield chunk
+            self.slack.n_bytes -= max(n_beyond, 0)  # not for a member that was refused, whose bytes nobody keeps
         except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
             raise FileFormatError("a member must be whole but is damaged; archive it anew") from error
 
@@ -79,8 +88,9 @@ def zip_members(path: Path, limits: ArchiveLimits) -> Iterator[ZipMember]:
     try:
         with zipfile.ZipFile(path) as archive:
             _check_overlaps(archive)
+            slack = _Slack()
             for info in archive.infolist():
-                yield ZipMember(archive, info, limits)
+                yield ZipMember(archive, info, limits, slack)
     except ArchiveError:
         raise
     except (zipfile.BadZipFile, NotImplementedError, struct.error, OSError, ValueError) as error:

@@ -150,6 +150,13 @@ class TestZip:
         assert files == {"a.off": MESH}
         assert "200 times" in refused[0]
 
+    def test_members_that_expand_too_far_share_one_mebibyte(self, tmp_path) -> None:
+        path = archive(tmp_path, "zip", [(f"{n}.off", bytes(MIB)) for n in range(20)])
+        files, refused = read(path)
+        assert len(files) == 1
+        assert len(refused) == 19
+        assert sum(map(len, files.values())) <= MIB + 200 * path.stat().st_size
+
     def test_members_that_overlap_are_refused(self, tmp_path) -> None:
         """Many entries of the directory share one member's bytes: as in archives of 42 kB that expand to petabytes."""
         path = archive(tmp_path, "zip", [("a.off", MESH * 50), ("b.off", MESH)])
@@ -271,6 +278,16 @@ class TestTar:
         with gzip.open(path, "wb") as made:
             made.write(info.tobuf(tarfile.GNU_FORMAT) + bytes(1024))
         assert "holes" in read(path)[1][0]
+
+    def test_names_of_names_without_end_are_refused(self, tmp_path) -> None:
+        path = tmp_path / "made.tar.gz"
+        info = tarfile.TarInfo("././@LongLink")
+        info.type, info.size = tarfile.GNUTYPE_LONGNAME, 6
+        with gzip.open(path, "wb") as made:
+            for _ in range(2_000):
+                made.write(info.tobuf(tarfile.GNU_FORMAT) + b"a.off".ljust(512, b"\0"))
+        with pytest.raises(ArchiveError, match="damaged"):
+            read(path)
 
     def test_an_archive_with_a_wrong_checksum_is_refused(self, tmp_path) -> None:
         path = archive(tmp_path, "tar.gz", [("a.off", MESH)])

@@ -1,12 +1,16 @@
 """Every way a file can be bad ends in one line that names file, rule, value and remedy."""
 
+from functools import reduce
+from operator import getitem
+
 import numpy as np
 import pytest
 
 from partwise.errors import FileFormatError, ParameterError, StoreError
 from partwise.io.atomic import write_atomically
+from partwise.io.glb import pack_glb, unpack_glb
 from partwise.io.limits import ReadLimits
-from partwise.io.read import MESH_SUFFIXES, read_mesh
+from partwise.io.read import _PARSERS, MESH_SUFFIXES, read_mesh
 from partwise.io.write import write_mesh
 from partwise.mesh import TriMesh
 
@@ -85,8 +89,10 @@ def test_too_many_bytes_on_disk_is_known_before_reading(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_too_many_faces(suffix, file_bytes):
-    assert "may have 1 faces but this one has 2" in refusal(f"a{suffix}", file_bytes(suffix), ReadLimits(max_faces=1))
+def test_too_many_faces(suffix, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    write_mesh(TriMesh(np.eye(3), np.array([[0, 1, 2], [0, 2, 1]])), path)
+    assert "may have 1 faces but this one has 2" in refusal(path, limits=ReadLimits(max_faces=1))
 
 
 @pytest.mark.parametrize(
@@ -147,6 +153,51 @@ def test_index_out_of_range(suffix, old, new, file_bytes):
 )
 def test_no_faces(name, data):
     refusal(name, data)
+
+
+PLY_OF_FOO = b"ply\nformat ascii 1.0\nelement foo %b\nend_header\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("shape.ply", PLY_OF_FOO % (b"9" * 5_000)),
+        ("shape.ply", PLY_OF_FOO % (b"9" * 18)),
+        ("shape.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n%d 0 1 2\n" % (2**63 - 1)),
+        ("shape.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n%b 0 1 2\n" % (b"9" * 5_000)),
+        ("shape.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 %b\n" % (b"9" * 5_000)),
+        ("shape.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 %b\n" % (b"9" * 5_000)),
+    ],
+)
+def test_numbers_of_absurd_size(name, data):
+    refusal(name, data)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("accessors", 0, "count"), "abc"),
+        (("accessors", 0, "count"), float("nan")),
+        (("accessors", 0, "count"), float("inf")),
+        (("bufferViews", 0, "byteStride"), "x"),
+        (("bufferViews", 0, "byteOffset"), "q"),
+        (("buffers", 0, "uri"), "data:;base64,\u00e4"),
+    ],
+)
+def test_values_of_a_glb_that_are_none(path, value, file_bytes):
+    document, binary = unpack_glb(file_bytes(".glb"))
+    *steps, last = path
+    reduce(getitem, steps, document)[last] = value
+    refusal("shape.glb", pack_glb(document, binary))
+
+
+@pytest.mark.parametrize("stumble", [ValueError("so\nand so"), OverflowError(), RecursionError(), MemoryError()])
+def test_what_no_parser_foresaw(stumble, monkeypatch):
+    def stumbles(_data, _limits):
+        raise stumble
+
+    monkeypatch.setitem(_PARSERS, ".off", stumbles)
+    assert type(stumble).__name__ in refusal("shape.off", b"OFF")
 
 
 def test_unknown_suffix():
