@@ -16,7 +16,7 @@ from partwise.workspace.workspace import Workspace
 class FaceUncertainty:
     """Uncertainty that is there, not yet read.
 
-    identity : differs from that of every other run of a model. metadata : what goes with it. read : (m,) float32, the
+    identity : differs from that of all other uncertainty. metadata : what goes with it. read : (m,) float32, the
     entropy of a face's probabilities as a share of the largest there can be, in [0, 1].
     """
 
@@ -38,4 +38,4 @@ def find_uncertainty(workspace: Workspace, shape: Shape) -> FaceUncertainty | No
         return (face_entropy(probabilities) / most).clip(0.0, 1.0).astype(np.float32)
 
     about = {"mesh_hash": run.summary["mesh_hash"], "model_version": str(run.summary["model_version"])}
-    return FaceUncertainty(f"{EVALUATE} {run.id}", read, about)
+    return FaceUncertainty(f"{EVALUATE} {run.id} {block_name} {row}", read, about)  # done again, a run keeps its id

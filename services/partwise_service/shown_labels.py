@@ -42,7 +42,8 @@ def shown_labels(workspace: Workspace, shape: Shape, segmentation: Segmentation)
         raise NotFoundError(f"shape {shape.id} has no {segmentation.value} labels any more; ask again")
 
     about = {"mesh_hash": run.summary["mesh_hash"], "model_version": str(run.summary["model_version"])}
-    return ShownLabels(run.summary["mesh_hash"], f"{stage} {run.id}", read, about)
+    identity = f"{stage} {run.id} {run.block_name} {run.row}"  # a run that is done again keeps its id
+    return ShownLabels(run.summary["mesh_hash"], identity, read, about)
 
 
 def labels_of_revision(workspace: Workspace, shape: Shape, revision_id: int) -> ShownLabels:

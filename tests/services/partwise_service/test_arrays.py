@@ -10,7 +10,7 @@ from partwise.render.thumbnail import PICTURE_SIZE
 from partwise.store.block_kinds import EVALUATION
 from partwise.store.records import NewBlock, NewRevision, NewStageRun, RevisionKind
 from partwise.testing.spheres import ball
-from partwise.testing.workspaces import publish_meshes, publish_picture
+from partwise.testing.workspaces import publish_evaluation, publish_meshes, publish_picture, publish_refinement
 from partwise_service.array_responses import IMMUTABLE, REVALIDATE, SAFETENSORS
 
 
@@ -58,6 +58,18 @@ def test_another_tag_gets_the_mesh(annotator, mesh_path, held) -> None:
 def test_one_of_several_tags_is_enough(annotator, mesh_path) -> None:
     tag = annotator.get(mesh_path).headers["etag"]
     assert annotator.get(mesh_path, headers={"If-None-Match": f'"x", {tag}'}).status_code == 304
+
+
+def test_what_a_stage_did_again_is_not_taken_for_what_it_did_before(annotator, workspace, mugs) -> None:
+    catalog, shape_id = workspace.catalog, mugs.ids["a.off"]
+    model = catalog.latest_model(mugs.collection_id)
+    paths = [f"/shapes/{shape_id}/labels?segmentation=refined", f"/shapes/{shape_id}/uncertainty"]
+    tags = [annotator.get(path).headers["etag"] for path in paths]
+    n_faces = mugs.meshes["a.off"].n_faces
+    publish_refinement(workspace, model, {shape_id: np.ones(n_faces, dtype=np.uint16)})
+    publish_evaluation(workspace, model, (1, 2), {shape_id: np.full((n_faces, 2), 0.5)})
+    for path, tag in zip(paths, tags, strict=True):
+        assert annotator.get(path, headers={"If-None-Match": tag}).status_code == 200, path
 
 
 class TestCompression:
