@@ -1,4 +1,4 @@
-"""/collections/{collection_id}/ops, /rounds, /ops/people: how a collection is doing."""
+"""/collections/{collection_id}/ops, /rounds, /skips, /ops/people: how a collection is doing."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -15,7 +15,14 @@ from partwise.workspace.segmentations import DESCRIBE, EVALUATE, PICTURE, REFINE
 from partwise.workspace.status import STAGE_ORDER
 from partwise.workspace.workspace import Workspace
 from partwise_service.answering import AnswerRoute
-from partwise_service.dependencies import CatalogDep, Operator, ScopedCollection, ServiceDep, visible_collection
+from partwise_service.dependencies import (
+    CatalogDep,
+    Operator,
+    Reviewer,
+    ScopedCollection,
+    ServiceDep,
+    visible_collection,
+)
 from partwise_service.schemas.base import MAX_ROW_ID
 from partwise_service.schemas.operations import (
     BlockFigures,
@@ -28,12 +35,15 @@ from partwise_service.schemas.operations import (
     QueueFigures,
     RoundOut,
     RoundsOut,
+    SkipOut,
+    SkipsPage,
     StageFigures,
     WorkerFigures,
     WorkerUsageOut,
 )
 
 MAX_WORKERS = 100
+MAX_PAGE = 500
 WINDOW = timedelta(minutes=15)
 SEEN_WITHIN = timedelta(minutes=1)
 COUNTED_STAGES: Mapping[JobKind, tuple[str, ...]] = {
@@ -57,6 +67,20 @@ def list_rounds(_caller: Operator, collection: ScopedCollection, catalog: Catalo
     score_name = catalog.ranking_score(collection.id)
     found = catalog.model_rounds(collection.id, score_name)
     return RoundsOut(score_name=score_name, items=[RoundOut.of(each) for each in found])
+
+
+@router.get("/collections/{collection_id}/skips")
+def list_skips(
+    _caller: Reviewer,
+    collection: ScopedCollection,
+    catalog: CatalogDep,
+    before: Annotated[int | None, Query(ge=1, le=MAX_ROW_ID, description="`next` of the page before.")] = None,
+    limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 100,
+) -> SkipsPage:
+    """Shapes that people gave back for good, and why, those that were handed out last first."""
+    found = catalog.skips(collection.id, before=before, limit=limit)
+    next_before = str(found[-1].lease_id) if len(found) == limit else None
+    return SkipsPage(items=[SkipOut.model_validate(each) for each in found], next=next_before)
 
 
 @router.get("/ops/people")

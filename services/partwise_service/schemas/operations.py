@@ -197,3 +197,21 @@ class RoundsOut(Answer):
 
     score_name: str
     items: list[RoundOut]
+
+
+class SkipOut(Answer):
+    """A shape that a person gave back for good. reason : in their words."""
+
+    shape_id: int
+    source_key: str
+    person_id: int
+    person_name: str
+    reason: str
+    skipped_at: datetime
+
+
+class SkipsPage(Answer):
+    """A page of skipped shapes, newest first. `next` goes into `before` for the next page; null at the end."""
+
+    items: list[SkipOut]
+    next: str | None = None

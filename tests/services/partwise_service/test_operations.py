@@ -226,3 +226,18 @@ def test_a_round_keeps_its_mean_when_a_newer_model_scores(operator, workspace, m
 @pytest.mark.parametrize("path", ["/collections/{id}/ops", "/collections/{id}/rounds", "/ops/people?collection={id}"])
 def test_figures_of_operation_are_for_operators(reviewer, mugs, path) -> None:
     assert reviewer.get(path.format(id=mugs.collection_id)).status_code == 403
+
+
+def test_reviewers_read_why_shapes_were_skipped(annotator, reviewer, mugs) -> None:
+    for key, reason in (("b.off", "two mugs in one"), ("sub/c.off", "a hole")):
+        wanted = {"collection_id": mugs.collection_id, "shape_ids": [mugs.ids[key]]}
+        (lease,) = annotator.post("/queue/claim", json=wanted).json()["items"]
+        annotator.post(f"/leases/{lease['id']}/skip", json={"reason": reason})
+    path = f"/collections/{mugs.collection_id}/skips"
+    first = reviewer.get(path, params={"limit": 1}).json()
+    (newest,) = first["items"]
+    assert (newest["source_key"], newest["person_name"], newest["reason"]) == ("sub/c.off", "ann", "a hole")
+    second = reviewer.get(path, params={"limit": 1, "before": first["next"]}).json()
+    assert [each["reason"] for each in second["items"]] == ["two mugs in one"]
+    assert reviewer.get(path).json()["next"] is None
+    assert annotator.get(path).status_code == 403

@@ -4,7 +4,7 @@ import pytest
 
 from partwise.store.records import Role
 
-OF_A_COLLECTION = ["", "/parts", "/shapes", "/shapes/ranked", "/reviews", "/models", "/embedding", "/ops"]
+OF_A_COLLECTION = ["", "/parts", "/shapes", "/shapes/ranked", "/reviews", "/models", "/embedding", "/ops", "/skips"]
 OF_A_SHAPE = ["", "/revisions", "/labels", "/uncertainty", "/thumbnail", "/reviews"]
 
 

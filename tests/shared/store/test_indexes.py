@@ -45,6 +45,7 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "leases of a person with shapes": lambda catalog, i: catalog.leased_by(1),
     "leases with shapes": lambda catalog, i: catalog.leased_shapes([1, 2]),
     "active leases": lambda catalog, i: catalog.active_leases(i),
+    "skips": lambda catalog, i: catalog.skips(i, before=7),
     "held shapes": lambda catalog, i: catalog.held_shapes([1, 2]),
     "score that ranks": lambda catalog, i: catalog.ranking_score(i),
     "highest that wait": lambda catalog, i: catalog.highest_waiting(i, "entropy", 9),
@@ -86,6 +87,7 @@ _INDEX_ALONE = ("table of a name", "table of a name by score")
 _NOT_SORTED = (
     "table of a name",
     "queue page",
+    "skips",
     "highest that wait",
     "claim",
     "table",

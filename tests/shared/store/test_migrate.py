@@ -18,11 +18,13 @@ _NEXT = """
 from alembic import op
 import sqlalchemy as sa
 revision = "9999"
-down_revision = "0007"
+down_revision = "{newest}"
 def upgrade():
     op.create_table("hat", sa.Column("id", sa.Integer, primary_key=True))
     {last}
 """
+
+_NEWEST = max(file.stem[1:5] for file in (migrate._MIGRATIONS / "versions").glob("m*.py"))
 
 
 @pytest.fixture
@@ -30,7 +32,7 @@ def later_migrations(tmp_path: Path) -> Path:
     """The package's migrations and one more."""
     folder = tmp_path / "migrations"
     shutil.copytree(migrate._MIGRATIONS, folder)
-    (folder / "versions" / "m9999_hats.py").write_text(_NEXT.format(last=""))
+    (folder / "versions" / "m9999_hats.py").write_text(_NEXT.format(newest=_NEWEST, last=""))
     return folder
 
 
@@ -96,7 +98,7 @@ def test_a_newer_schema_asks_for_a_newer_partwise(
         later.setattr(migrate, "_MIGRATIONS", later_migrations)
         create_catalog(f"sqlite:///{catalog_file}").close()
     for opened in (open_catalog, create_catalog):
-        with pytest.raises(StoreError, match="newer than 0007; use a newer partwise"):
+        with pytest.raises(StoreError, match=f"newer than {_NEWEST}; use a newer partwise"):
             opened(f"sqlite:///{catalog_file}")
 
 
@@ -104,7 +106,7 @@ def test_a_migration_that_fails_leaves_the_old_schema(
     catalog_file: Path, later_migrations: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     broken = later_migrations / "versions" / "m9999_hats.py"
-    broken.write_text(_NEXT.format(last="raise RuntimeError('power cut')"))
+    broken.write_text(_NEXT.format(newest=_NEWEST, last="raise RuntimeError('power cut')"))
     with monkeypatch.context() as later:
         later.setattr(migrate, "_MIGRATIONS", later_migrations)
         with pytest.raises(RuntimeError, match="power cut"):

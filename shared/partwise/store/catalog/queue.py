@@ -4,7 +4,7 @@ from collections.abc import Collection as SizedIterable
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from partwise.store.records import Lease, LeasedShape, NewClaim, QueueDepth
+from partwise.store.records import Lease, LeasedShape, NewClaim, QueueDepth, SkippedShape
 
 
 class QueueCatalog(Protocol):
@@ -19,7 +19,9 @@ class QueueCatalog(Protocol):
         """Lease the first free shape: kept for this person, then by rank. None if nothing is left for them.
 
         A person gets no shape that they labelled or skipped since it went into the queue. While a shape is prefetched,
-        the next claim takes that one, and another prefetch returns it again.
+        the next claim in its collection takes that one, and another prefetch returns it again. One is prefetched at a
+        time: a prefetch in another collection gives it back. A blind check that they did not do and get once more, this
+        way or by name, is one again.
 
         Raises `ConflictError` if the person holds `MAX_HELD` shapes already.
         """
@@ -49,6 +51,10 @@ class QueueCatalog(Protocol):
 
     def active_leases(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[Lease]:
         """A page of the leases that have not ended, by id."""
+        ...
+
+    def skips(self, collection_id: int, *, before: int | None = None, limit: int = 1000) -> Sequence[SkippedShape]:
+        """A page of the shapes that people gave back for good, by lease id, those that were handed out last first."""
         ...
 
     def held_shapes(self, shape_ids: SizedIterable[int]) -> Mapping[int, Sequence[Lease]]:
@@ -81,7 +87,7 @@ class QueueCatalog(Protocol):
         ...
 
     def reopen_shape(self, shape_id: int, operator_id: int, *, for_person_id: int | None = None) -> None:
-        """Put a shape first in the queue for another round, for one person or anyone.
+        """Put a shape first in the queue for another round, for one person or anyone. Leases that expired end.
 
         Raises `ConflictError` while somebody works on it, or it has no surface to label yet.
         """

@@ -39,6 +39,7 @@ from partwise.store.records.leases import (
     LeasePurpose,
     NewClaim,
     QueueDepth,
+    SkippedShape,
     check_lease_time,
 )
 from partwise.store.records.listing import (
@@ -161,6 +162,7 @@ __all__ = [
     "ShapeOrder",
     "ShapeState",
     "ShapeTile",
+    "SkippedShape",
     "StageCount",
     "StageRun",
     "StoredStroke",

@@ -110,6 +110,19 @@ class LeasedShape:
 
 
 @dataclass(frozen=True, slots=True)
+class SkippedShape:
+    """A shape that a person gave back for good. reason : in their words."""
+
+    lease_id: int
+    shape_id: int
+    source_key: str
+    person_id: int
+    person_name: str
+    reason: str
+    skipped_at: datetime
+
+
+@dataclass(frozen=True, slots=True)
 class QueueDepth:
     """What waits in a collection's queue.
 

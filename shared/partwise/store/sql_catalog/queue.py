@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import leases, places, queue, told
+from partwise.store.sql import leases, places, queue, skips, told
 from partwise.store.sql.collections import schema_version
 from partwise.store.sql_catalog.base import SqlBase
 
@@ -38,6 +38,10 @@ class SqlQueueCatalog(SqlBase):
     def active_leases(self, collection_id: int, *, after: int = 0, limit: int = 1000) -> Sequence[r.Lease]:
         with reading(self._engine) as connection:
             return leases.active_leases(connection, collection_id, after, limit)
+
+    def skips(self, collection_id: int, *, before: int | None = None, limit: int = 1000) -> Sequence[r.SkippedShape]:
+        with reading(self._engine) as connection:
+            return skips.skips(connection, collection_id, before, limit)
 
     def held_shapes(self, shape_ids: SizedIterable[int]) -> Mapping[int, Sequence[r.Lease]]:
         with reading(self._engine) as connection:

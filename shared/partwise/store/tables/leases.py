@@ -67,6 +67,8 @@ Index(
     sqlite_where=_IS_ACTIVE,
     postgresql_where=_IS_ACTIVE,
 )
+_IS_SKIPPED = text("outcome = 'skipped'")
+Index("ix_lease_skipped", lease.c.collection_id, lease.c.id, sqlite_where=_IS_SKIPPED, postgresql_where=_IS_SKIPPED)
 
 queue_rank = Table(  # a row for each label that a shape still wants; while somebody is at it, `lease_id` says who
     "queue_rank",

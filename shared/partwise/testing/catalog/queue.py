@@ -11,6 +11,7 @@ from partwise.store.records import (
     DEFAULT_RANKING,
     MAX_HELD,
     FirstShape,
+    Lease,
     LeasedShape,
     LeaseOutcome,
     LeasePurpose,
@@ -18,6 +19,7 @@ from partwise.store.records import (
     NewFailure,
     NewScore,
     NewShape,
+    Person,
     RevisionKind,
 )
 from partwise.testing.catalog.samples import (
@@ -146,6 +148,24 @@ class QueueConformance:
         taken = claim(catalog, collection, ann)
         assert (taken.id, taken.is_prefetched) == (ahead.id, False)
 
+    def test_one_shape_is_prefetched_at_a_time_in_all_collections(self, catalog: Catalog) -> None:
+        chairs, _ = ready_shapes(catalog, 2)
+        mugs = catalog.create_collection("mugs", ["body"])
+        _, (mug,) = _ready_in(catalog, mugs.id)
+        ann = catalog.add_person("ann")
+        chair = claim(catalog, chairs, ann, is_prefetch=True)
+        ahead = claim(catalog, mugs, ann, is_prefetch=True)
+        assert catalog.leases_of(ann.id) == [ahead]
+        assert (ahead.shape_id, catalog.lease(chair.id).outcome) == (mug, LeaseOutcome.RELEASED)
+        assert claim(catalog, chairs, ann).shape_id == chair.shape_id
+        assert [each.is_prefetched for each in catalog.leases_of(ann.id)] == [True, False]
+
+    def test_what_a_person_works_on_is_prefetched_no_more(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 1)
+        ann = catalog.add_person("ann")
+        lease = claim(catalog, collection, ann)
+        assert not catalog.renew_lease(lease.id, ann.id, 60, is_prefetched=True).is_prefetched
+
     def test_released_shapes_go_back_to_their_rank(self, catalog: Catalog) -> None:
         collection, _ = ready_shapes(catalog, 2)
         ann, bob = catalog.add_person("ann"), catalog.add_person("bob")
@@ -154,6 +174,22 @@ class QueueConformance:
         assert ended.outcome is LeaseOutcome.RELEASED
         assert catalog.release_lease(lease.id, ann.id) == ended
         assert claim(catalog, collection, bob).shape_id == lease.shape_id
+
+    def test_skips_are_told_with_their_reasons_newest_first(self, catalog: Catalog) -> None:
+        collection, _ = ready_shapes(catalog, 3)
+        _, others = ready_shapes(catalog, 1, "mugs")
+        ann = catalog.add_person("ann")
+        first, second = (claim(catalog, collection, ann) for _ in range(2))
+        for lease, reason in ((first, "two chairs in one"), (second, "a hole")):
+            catalog.skip_lease(lease.id, ann.id, reason)
+        catalog.skip_lease(catalog.claim_shape(others[0], ann.id, 60).id, ann.id, "no mug")
+        catalog.release_lease(claim(catalog, collection, ann).id, ann.id)
+        newest, oldest = catalog.skips(collection.id)
+        assert (newest.shape_id, newest.person_name, newest.reason) == (second.shape_id, "ann", "a hole")
+        assert (oldest.shape_id, oldest.reason) == (first.shape_id, "two chairs in one")
+        assert newest.skipped_at == catalog.lease(second.id).released_at
+        assert catalog.skips(collection.id, limit=1) == [newest]
+        assert catalog.skips(collection.id, before=newest.lease_id) == [oldest]
 
     def test_skipped_shapes_go_to_others(self, catalog: Catalog) -> None:
         collection, (first, second) = ready_shapes(catalog, 2)
@@ -365,6 +401,38 @@ class QueueConformance:
         assert (blind.rank, blind.score_name, blind.model_version) == (1, "entropy", 1)
         assert blind.score == pytest.approx(0.85)
         assert (plain.rank, plain.score) == (1, 0.9)
+
+    @pytest.mark.parametrize("by_name", [True, False])
+    def test_a_blind_check_that_was_given_back_is_one_again(self, catalog: Catalog, by_name: bool) -> None:
+        collection, (known,) = ready_shapes(catalog, 1)
+        model = save_model(catalog, collection.id)
+        catalog.record_done([], [NewScore(known, model.id, "entropy", 0.1)])
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 0.5})
+        label(catalog, known, RevisionKind.REFERENCE)
+        ann, bob = catalog.list_people()[0], catalog.add_person("bob")
+        blind = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.1))
+        assert blind is not None
+        catalog.release_lease(blind.id, ann.id)
+        catalog.record_done([], [NewScore(known, model.id, "entropy", 0.9)])
+
+        def again(person: Person) -> Lease:
+            return catalog.claim_shape(known, person.id, 60) if by_name else claim(catalog, collection, person)
+
+        told = ("purpose", "rank", "score_name", "score", "model_version")
+        second = again(ann)
+        assert [getattr(second, name) for name in told] == [getattr(blind, name) for name in told]
+        assert second.purpose is LeasePurpose.BLIND
+        catalog.release_lease(second.id, ann.id)
+        theirs = again(bob)
+        assert (theirs.purpose, theirs.score) == (LeasePurpose.LABEL, 0.9)
+
+    def test_who_did_a_blind_check_labels_the_shape_when_they_ask_for_it(self, catalog: Catalog) -> None:
+        collection, (known,) = ready_shapes(catalog, 1)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 1.0})
+        label(catalog, known, RevisionKind.REFERENCE)
+        ann = catalog.list_people()[0]
+        confirm(catalog, claim(catalog, collection, ann))
+        assert catalog.claim_shape(known, ann.id, 60).purpose is LeasePurpose.LABEL
 
     def test_only_what_waits_like_all_else_is_served_blind(self, catalog: Catalog) -> None:
         collection, (confirmed, assigned, other) = ready_shapes(catalog, 3)
