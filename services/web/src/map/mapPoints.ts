@@ -96,7 +96,7 @@ async function readMap(
 
 export const mapQuery = (collectionId: number) =>
   queryOptions({
-    queryKey: ["table", collectionId, "map"],
+    queryKey: ["map", collectionId],
     queryFn: ({ signal, client }) =>
       readMap(collectionId, signal, (share) =>
         client.setQueryData(mapProgressQuery(collectionId).queryKey, Math.min(1, share)),
@@ -108,7 +108,7 @@ export const mapQuery = (collectionId: number) =>
 /** How much of the map has been read, in [0, 1], while it is. */
 export const mapProgressQuery = (collectionId: number) =>
   queryOptions({
-    queryKey: ["table", collectionId, "map progress"],
+    queryKey: ["map progress", collectionId],
     queryFn: () => 0,
     staleTime: Number.POSITIVE_INFINITY,
   });

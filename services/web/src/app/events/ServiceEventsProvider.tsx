@@ -3,7 +3,7 @@ import { type ReactNode, useEffect, useMemo, useState } from "react";
 import { listen, type ServiceEvent } from "../../api/events";
 import { meQuery } from "../../api/queries";
 import { EventHub } from "./EventHub";
-import { isProgress, isStaleAfter } from "./invalidation";
+import { isKeptInPlace, isProgress, isStaleAfter } from "./invalidation";
 import { Soon } from "./Soon";
 import { type ConnectionState, ServiceEventsContext } from "./useServiceEvents";
 
@@ -50,7 +50,7 @@ function follow(
     },
     onMissed() {
       hub.publishMissed();
-      void queries.invalidateQueries();
+      void queries.invalidateQueries({ predicate: (each) => !isKeptInPlace(each) });
     },
     onConnection(isConnected) {
       setConnected(isConnected);

@@ -45,7 +45,7 @@ export function TableRoom({ collectionId }: { collectionId: number }) {
   const client = useQueryClient();
   const showNew = () => {
     client.removeQueries({ queryKey: listKey(list) });
-    client.invalidateQueries({ queryKey: ["table", collectionId, "count"] });
+    client.invalidateQueries({ queryKey: ["counts", collectionId] });
     setGeneration((held) => held + 1);
   };
   const { none, refresh } = selection;

@@ -29,7 +29,7 @@ export function useRetryFailures(collectionId: number, onRetried: () => void) {
     onError: (error) => toast({ message: error.message, tone: "bad" }),
     onSettled: () =>
       Promise.all(
-        ["failures", "ops", "jobs"].map((about) =>
+        (["failures", "ops", "jobs"] as const).map((about) =>
           queries.invalidateQueries({ queryKey: [about, collectionId] }),
         ),
       ),

@@ -19,7 +19,9 @@ export function useIngest(collectionId: number) {
     onError: (error) => toast({ message: error.message, tone: "bad" }),
     onSettled: () =>
       Promise.all(
-        ["jobs", "uploads"].map((about) => queries.invalidateQueries({ queryKey: [about, collectionId] })),
+        (["jobs", "uploads"] as const).map((about) =>
+          queries.invalidateQueries({ queryKey: [about, collectionId] }),
+        ),
       ),
   });
 }

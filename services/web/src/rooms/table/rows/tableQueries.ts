@@ -61,13 +61,15 @@ export async function fetchNamedRows(
 }
 
 /** Everything that hangs on a list, for changing or dropping it at once. */
-export const listKey = (list: RowList) =>
-  ["table", list.collectionId, "rows", list.filters, list.order, list.descending, list.generation] as const;
+export const listKey = (list: RowList) => ["rows", ...restOf(list)] as const;
+
+const restOf = ({ collectionId, filters, order, descending, generation }: RowList) =>
+  [collectionId, filters, order, descending, generation] as const;
 
 /** A page. What events change is changed in place, so it never grows stale by itself. */
 export const pageQuery = (list: RowList, page: number) =>
   queryOptions({
-    queryKey: [...listKey(list), page],
+    queryKey: ["rows", ...restOf(list), page],
     queryFn: ({ signal }) => fetchRows(list, page * PAGE_ROWS, PAGE_ROWS, signal),
     staleTime: Number.POSITIVE_INFINITY,
     gcTime: DROPPED_AFTER_MS,
@@ -78,7 +80,7 @@ export const pageQuery = (list: RowList, page: number) =>
 /** How many shapes meet the filters. */
 export const countQuery = (collectionId: number, filters: ShapeFilters) =>
   queryOptions({
-    queryKey: ["table", collectionId, "count", filters],
+    queryKey: ["counts", collectionId, filters],
     queryFn: async ({ signal }) => {
       const params = { path: { collection_id: collectionId }, query: filterQuery(filters) };
       const found = await body(
@@ -90,7 +92,7 @@ export const countQuery = (collectionId: number, filters: ShapeFilters) =>
 
 export const ordersQuery = (collectionId: number) =>
   queryOptions({
-    queryKey: ["table", collectionId, "orders"],
+    queryKey: ["orders", collectionId],
     queryFn: () =>
       body(
         api.GET("/api/v1/collections/{collection_id}/orders", {
