@@ -38,6 +38,7 @@ class ServiceSettings(BaseModel):
     ingest_prefixes : folders by name, below which jobs may ingest; the workers read the same variable.
     page_folder : the built files of the annotation page.
     event_stream_s : seconds after which a stream of events ends, for the client to go on with another.
+    max_event_streams : that one token may have open; a page has one.
     event_keep_h : hours after which events are forgotten; who resumes from before begins anew.
     """
 
@@ -63,6 +64,7 @@ class ServiceSettings(BaseModel):
     tool_shapes: int = Field(16, ge=1, le=10_000)
     tool_timeout_s: float = Field(60.0, gt=0)
     event_stream_s: float = Field(3600.0, ge=0)
+    max_event_streams: int = Field(8, ge=1, le=10_000)
     event_keep_h: float = Field(72.0, gt=0, le=24 * 366)
     max_uploads: int = Field(8, ge=1, le=1_000)
     upload_ttl_h: float = Field(24.0, gt=0, le=24 * 31)

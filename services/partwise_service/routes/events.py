@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from typing import Annotated, Any
 
 from anyio.to_thread import run_sync
-from fastapi import APIRouter, Header, Query, Request
+from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.responses import StreamingResponse
 
 from partwise.store.catalog import Catalog
@@ -40,7 +40,13 @@ LastId = Annotated[str | None, Header(description="The last id that the client h
 AfterId = Annotated[int | None, Query(ge=0, le=MAX_EVENT_ID, description="The same, for clients without the header.")]
 
 
-@router.get("/events", responses=_RESPONSES, response_class=StreamingResponse)
+async def stream_place(caller: Caller, service: ServiceDep) -> AsyncIterator[None]:
+    """One of the streams that a token may have open, until it ends. Problems: 429 if it has as many."""
+    with service.streams.one_more(caller.token.id):
+        yield
+
+
+@router.get("/events", dependencies=[Depends(stream_place)], responses=_RESPONSES, response_class=StreamingResponse)
 async def stream_events(
     request: Request,
     caller: Caller,

@@ -55,7 +55,7 @@ def _session(open_service: Service, login: Login, address: str) -> IssuedToken:
         code = catalog.issue_login_code(identity.token.id, settings.login_code_s).code
     else:
         code = login.code
-    refuse_too_many(open_service, address, code)
+        refuse_too_many(open_service, address, code)
     session = catalog.exchange_login_code(code, settings.session_h * HOUR_S)
     if session is None:
         record_failure(open_service, address, code)

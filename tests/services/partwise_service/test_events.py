@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
 
 import pytest
@@ -114,6 +115,20 @@ def test_who_names_an_event_that_never_was_is_told_to_begin_anew(annotator, work
     last = _add(workspace, mugs.collection_id, 1)
     answer = annotator.get("/events", headers={"Last-Event-ID": unknown})
     assert _events(answer.text) == [(last, "missed", {})]
+
+
+def test_a_token_has_only_so_many_streams(annotator, reviewer, workspace, app, settings) -> None:
+    token, streams = workspace.catalog.authenticate(annotator.secret), app.state.service.streams
+    with ExitStack() as opened:
+        for _ in range(settings.max_event_streams):
+            opened.enter_context(streams.one_more(token.id))
+        assert annotator.get("/events").status_code == 429
+        assert reviewer.get("/events").status_code == 200
+
+
+def test_a_stream_that_has_ended_counts_no_more(annotator, settings) -> None:
+    answers = [annotator.get("/events").status_code for _ in range(settings.max_event_streams + 1)]
+    assert set(answers) == {200}
 
 
 def test_strangers_hear_nothing(nobody) -> None:

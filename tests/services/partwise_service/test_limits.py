@@ -8,6 +8,8 @@ import pytest
 
 from partwise.store.records import REVOKED, Event, Token
 from partwise_service.app import UPLOAD_PATH
+from partwise_service.problems import ProblemError
+from partwise_service.security.at_once import AtOnce
 from partwise_service.security.middleware import BodyLimitMiddleware
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import ASSURED_S, TRUST_S, RecentlyGood
@@ -116,6 +118,18 @@ def test_the_limiter_forgets_the_oldest_key_when_it_is_full() -> None:
     for key in "abc":
         limiter.record(key)
     assert [limiter.wait_s(key) > 0 for key in "abc"] == [False, True, True]
+
+
+def test_what_has_ended_is_under_way_no_more_however_it_ended() -> None:
+    at_once = AtOnce(1, "calls")
+    for _ in range(2):
+        with pytest.raises(ZeroDivisionError), at_once.one_more("a"):
+            raise ZeroDivisionError
+    with at_once.one_more("a"), at_once.one_more("b"):
+        with pytest.raises(ProblemError, match="1 calls at once, as many as you may"), at_once.one_more("a"):
+            pass
+        with pytest.raises(ProblemError), at_once.one_more("a"):  # refused, it has left the first one's place alone
+            pass
 
 
 @pytest.fixture

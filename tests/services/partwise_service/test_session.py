@@ -48,6 +48,14 @@ def test_a_token_begins_a_session_too(nobody, reviewer) -> None:
     assert nobody.get("/me").json()["is_session"]
 
 
+def test_a_neighbours_attempts_keep_nobody_out_whose_token_worked_lately(nobody, reviewer, settings) -> None:
+    assert reviewer.get("/me").status_code == 200
+    for n in range(settings.max_auth_failures):
+        nobody.post("/login", json={"code": f"{n}-guessed"})
+    assert nobody.post("/login", json={"code": "another"}).status_code == 429
+    assert nobody.post("/login", json={"token": reviewer.secret}).status_code == 200
+
+
 @pytest.mark.parametrize("body", [{}, {"code": "a", "token": "b"}, {"code": ""}, {"code": 7}, {"code": "a" * 201}, "a"])
 def test_what_is_no_login_is_refused(nobody, body) -> None:
     assert nobody.post("/login", json=body).status_code == 422
