@@ -13,6 +13,7 @@ from starlette.middleware.cors import CORSMiddleware
 
 from partwise import __version__
 from partwise.workspace.workspace import open_workspace
+from partwise_service.array_places import limit_array_places
 from partwise_service.compression import CompressionMiddleware
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
@@ -45,8 +46,8 @@ from partwise_service.routes import (
 )
 from partwise_service.schemas.operations import OpsOut
 from partwise_service.security.at_once import AtOnce
-from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
+from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.service import Service
 from partwise_service.settings import ServiceSettings
@@ -96,6 +97,7 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         current_default_thread_limiter().total_tokens = settings.threads
+        limit_array_places(settings.threads)
         async with AsyncExitStack() as resources:
             workspace = resources.enter_context(open_workspace(settings.workspace))
             limiter = FailureLimiter(settings.share(settings.max_auth_failures), settings.auth_window_s, clock)

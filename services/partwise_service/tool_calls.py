@@ -72,7 +72,15 @@ class ModelCall:
     parameters: RefinementParameters
 
 
-ToolCall = PatchesCall | BoundariesCall | ModelCall
+@dataclass(frozen=True, slots=True, eq=False)
+class LabelsCall:
+    """draft : whose labels are wanted."""
+
+    mesh: Mesh
+    draft: DraftLog
+
+
+ToolCall = PatchesCall | BoundariesCall | ModelCall | LabelsCall
 
 
 class Workbench:
@@ -95,6 +103,8 @@ class Workbench:
                 return self._boundaries(call)
             case ModelCall():
                 return self._model(call)
+            case LabelsCall():
+                return self._replayed(call.mesh, call.draft)
 
     def _patches(self, call: PatchesCall) -> np.ndarray:
         from partwise.segmentation.patches import over_segment  # its kernels are compiled, which not every use needs
@@ -138,7 +148,7 @@ class Workbench:
         from partwise.segmentation.paint import PaintSurface
 
         surface = self._kept(("surface", mesh.mesh_hash), lambda: PaintSurface.build(self._mesh(mesh)))
-        return replayed(surface, self._mesh(mesh), draft.base_labels, draft.log).labels
+        return replayed(surface, self._mesh(mesh), draft.base_labels, draft.log).labels.copy()
 
     def _mesh(self, mesh: Mesh) -> TriMesh:
         return self._kept(("mesh", mesh.mesh_hash), lambda: read_mesh(self._arrays, mesh))

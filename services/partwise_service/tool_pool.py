@@ -1,7 +1,8 @@
 """`ToolPool`: the tools in a few processes of their own, so that one big shape stalls neither requests nor the queue.
 
 A call goes to a process that has its shape prepared if one is idle, else to the one idle longest. When all are busy it
-waits in a bounded line. A process that dies or takes too long costs the call it was at, and is started anew.
+waits in a bounded line, and so it does while another of the same person's runs: nobody has more than one process at a
+time. A process that dies or takes too long costs the call it was at, and is started anew.
 """
 
 import asyncio
@@ -21,9 +22,9 @@ import numpy as np
 from partwise.errors import PartwiseError
 from partwise.store.open_arrays import open_array_store
 from partwise_service.problems import ProblemError, ProblemKind
+from partwise_service.security.at_once import RETRY_AFTER_S, AtOnce
 from partwise_service.tool_calls import ToolCall, Workbench
 
-RETRY_AFTER_S = 2
 _log = logging.getLogger(__name__)
 Answering = Callable[[Connection, str, int], None]
 
@@ -32,6 +33,7 @@ Answering = Callable[[Connection, str, int], None]
 class PoolLimits:
     """n_processes : tools that run at once. max_queued : calls that may wait. timeout_s : of a call that runs.
 
+    max_own : calls of one person that run or wait.
     max_shapes : shapes that a process keeps prepared. abandoned_s : how much longer a call runs when its client has
     gone: mostly it was about to prepare a shape for the next call, which is worth having.
     """
@@ -40,6 +42,7 @@ class PoolLimits:
     max_queued: int
     max_shapes: int
     timeout_s: float
+    max_own: int = 3
     abandoned_s: float = 5.0
 
 
@@ -155,6 +158,15 @@ class ToolProcess:
         return own
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Waiting:
+    """A place in the line, for a process that is given to this person's call."""
+
+    person_id: int
+    mesh_hash: str
+    place: asyncio.Future[ToolProcess]
+
+
 class ToolPool:
     """Runs calls for the event loop that it is used on.
 
@@ -165,7 +177,10 @@ class ToolPool:
         self._limits = limits
         self._processes = [ToolProcess(array_url, limits, answering) for _ in range(limits.n_processes)]
         self._idle = deque(self._processes)
-        self._line: deque[asyncio.Future[ToolProcess]] = deque()
+        self._line: deque[_Waiting] = deque()
+        self._served: set[int] = set()
+        """People who have a process at work."""
+        self._own = AtOnce(limits.max_own, "calls of tools")
         self._threads = ThreadPoolExecutor(limits.n_processes, "partwise-tool")
 
     @property
@@ -178,59 +193,70 @@ class ToolPool:
         """Processes without a call."""
         return len(self._idle)
 
-    async def run(self, call: ToolCall) -> np.ndarray:
+    async def run(self, call: ToolCall, person_id: int) -> np.ndarray:
         """The tool's result. Cancelled, a call that waits is dropped, and one that runs ends soon, in vain.
 
-        Raises what the tool refuses; problems: 503 with Retry-After if too many wait, and as `ToolProcess.run`.
+        Raises what the tool refuses; problems with Retry-After: 503 if too many wait, 429 if too many of this person's
+        do; 503 as `ToolProcess.run`.
         """
-        process = self._taken(call.mesh.mesh_hash) if self._idle else await self._next_free()
-        running = asyncio.get_running_loop().run_in_executor(self._threads, process.run, call)
-        running.add_done_callback(lambda done: self._finished(process, done))
-        try:
-            return await asyncio.shield(running)
-        except asyncio.CancelledError:
-            asyncio.get_running_loop().call_later(self._limits.abandoned_s, _give_up_unless_done, process, running)
-            raise
+        with self._own.one_more(person_id):
+            process = await self._next_free(person_id, call.mesh.mesh_hash)
+            running = asyncio.get_running_loop().run_in_executor(self._threads, process.run, call)
+            running.add_done_callback(lambda done: self._finished(process, person_id, done))
+            try:
+                return await asyncio.shield(running)
+            except asyncio.CancelledError:
+                asyncio.get_running_loop().call_later(self._limits.abandoned_s, _give_up_unless_done, process, running)
+                raise
 
     def close(self) -> None:
         """Ends all processes; calls that run or wait fail."""
-        for future in self._line:
-            future.cancel()
+        for waiting in self._line:
+            waiting.place.cancel()
         for process in self._processes:
             process.stop()
         self._threads.shutdown(wait=True, cancel_futures=True)
+
+    async def _next_free(self, person_id: int, mesh_hash: str) -> ToolProcess:
+        waiting = _Waiting(person_id, mesh_hash, asyncio.get_running_loop().create_future())
+        self._line.append(waiting)
+        self._hand_out()
+        if not waiting.place.done() and len(self._line) > self._limits.max_queued:
+            self._line.remove(waiting)
+            raise _unavailable(f"All tools are busy and {len(self._line)} calls wait; try again in a moment.")
+        try:
+            return await waiting.place
+        except asyncio.CancelledError:
+            if waiting in self._line:
+                self._line.remove(waiting)
+            elif waiting.place.done() and not waiting.place.cancelled():  # it was given a process in this very moment
+                self._give_back(waiting.place.result(), person_id)
+            raise
+
+    def _hand_out(self) -> None:
+        """Gives idle processes to those who wait, in turn; whoever has one already waits on."""
+        for waiting in list(self._line):
+            if not self._idle:
+                return
+            if waiting.person_id not in self._served and not waiting.place.done():
+                self._line.remove(waiting)
+                self._served.add(waiting.person_id)
+                waiting.place.set_result(self._taken(waiting.mesh_hash))
 
     def _taken(self, mesh_hash: str) -> ToolProcess:
         knowing = next((each for each in self._idle if mesh_hash in each.mesh_hashes), self._idle[0])
         self._idle.remove(knowing)
         return knowing
 
-    async def _next_free(self) -> ToolProcess:
-        if len(self._line) >= self._limits.max_queued:
-            raise _unavailable(f"All tools are busy and {len(self._line)} calls wait; try again in a moment.")
-        place: asyncio.Future[ToolProcess] = asyncio.get_running_loop().create_future()
-        self._line.append(place)
-        try:
-            return await place
-        except asyncio.CancelledError:
-            if place in self._line:
-                self._line.remove(place)
-            elif place.done() and not place.cancelled():  # it was given a process in this very moment
-                self._give_back(place.result())
-            raise
-
-    def _finished(self, process: ToolProcess, done: "asyncio.Future[np.ndarray]") -> None:
+    def _finished(self, process: ToolProcess, person_id: int, done: "asyncio.Future[np.ndarray]") -> None:
         if not done.cancelled():
             done.exception()  # nobody may be left who asks for it
-        self._give_back(process)
+        self._give_back(process, person_id)
 
-    def _give_back(self, process: ToolProcess) -> None:
-        while self._line:
-            place = self._line.popleft()
-            if not place.done():
-                place.set_result(process)
-                return
+    def _give_back(self, process: ToolProcess, person_id: int) -> None:
+        self._served.discard(person_id)
         self._idle.append(process)
+        self._hand_out()
 
 
 def _give_up_unless_done(process: ToolProcess, running: "asyncio.Future[np.ndarray]") -> None:

@@ -10,7 +10,7 @@ from partwise.store.records import Collection, Shape, ShapeState
 from partwise.workspace.accepting import accept_in_bulk, settle_rechecks
 from partwise.workspace.embedding_map import embedding_key, spread_out
 from partwise.workspace.segmentations import Segmentation
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ServiceDep, WorkspaceDep, shapes_of
 from partwise_service.schemas.accepts import (
     Accept,
@@ -27,6 +27,7 @@ router = APIRouter(prefix="/collections/{collection_id}", route_class=AnswerRout
 
 
 @router.post("/accept")
+@waits_for_arrays
 def accept_labels(caller: Reviewer, workspace: WorkspaceDep, collection: ScopedCollection, wish: Accept) -> AcceptedOut:
     """Make a model's labels those of shapes that wait, each by itself: what is `refused` keeps none of the others.
 
@@ -52,6 +53,7 @@ def accept_labels(caller: Reviewer, workspace: WorkspaceDep, collection: ScopedC
 
 
 @router.get("/accepts")
+@waits_for_arrays
 def list_accepts(
     _caller: Reviewer,
     workspace: WorkspaceDep,
@@ -67,6 +69,7 @@ def list_accepts(
 
 
 @router.post("/queue/select")
+@waits_for_arrays
 def select_first(
     caller: Reviewer, service: ServiceDep, collection: ScopedCollection, catalog: CatalogDep, wish: Selection
 ) -> Selected:

@@ -8,7 +8,7 @@ from partwise.errors import NotFoundError
 from partwise.store.meshes import mesh_arrays
 from partwise.workspace.choices import Segmentation
 from partwise.workspace.shapes import load_mesh
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
 from partwise_service.array_responses import (
     IMMUTABLE,
     PNG_RESPONSES,
@@ -28,6 +28,7 @@ ShapeQuery = Annotated[int, Query(ge=1, le=MAX_ROW_ID, description="A shape that
 
 
 @router.get("/meshes/{mesh_hash}", response_class=Response, responses=SAFETENSORS_RESPONSES)
+@waits_for_arrays
 def get_mesh(
     request: Request, caller: Caller, workspace: WorkspaceDep, mesh_hash: Hash, shape_id: ShapeQuery
 ) -> Response:
@@ -42,6 +43,7 @@ def get_mesh(
 
 
 @router.get("/shapes/{shape_id}/labels", response_class=Response, responses=SAFETENSORS_RESPONSES)
+@waits_for_arrays
 def get_labels(
     request: Request,
     shape: ScopedShape,
@@ -63,6 +65,7 @@ def get_labels(
 
 
 @router.get("/shapes/{shape_id}/uncertainty", response_class=Response, responses=SAFETENSORS_RESPONSES)
+@waits_for_arrays
 def get_uncertainty(request: Request, shape: ScopedShape, workspace: WorkspaceDep) -> Response:
     """`uncertainty` (m,) float32: how unsure the newest model is of each face, from 0 (sure) to 1 (all parts alike)."""
     found = find_uncertainty(workspace, shape)
@@ -74,6 +77,7 @@ def get_uncertainty(request: Request, shape: ScopedShape, workspace: WorkspaceDe
 
 
 @router.get("/shapes/{shape_id}/thumbnail", response_class=Response, responses=PNG_RESPONSES)
+@waits_for_arrays
 def get_thumbnail(
     request: Request,
     shape: ScopedShape,

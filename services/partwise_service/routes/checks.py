@@ -9,8 +9,7 @@ from partwise.errors import NotFoundError
 from partwise.store.catalog import Catalog
 from partwise.store.records import Answer, Consensus, Effort, Role
 from partwise.store.reviews import Review, ReviewReason
-from partwise.workspace.confirming import choose_answer
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
 from partwise_service.array_responses import (
     PNG_RESPONSES,
     SAFETENSORS_RESPONSES,
@@ -107,6 +106,7 @@ def read_answer(
 
 
 @router.get("/shapes/{shape_id}/answers/{answer_id}/thumbnail", responses=PNG_RESPONSES, response_class=Response)
+@waits_for_arrays
 def show_answer(
     request: Request, _caller: Reviewer, shape: ScopedShape, workspace: WorkspaceDep, answer_id: RowId
 ) -> Response:
@@ -122,11 +122,9 @@ def choose_labels(
     caller: Reviewer, shape: ScopedShape, catalog: CatalogDep, review_id: RowId, choice: Choice
 ) -> RevisionOut:
     """Make one person's labels the shape's, in their name, which resolves a disagreement."""
-    open_ones = [each for each in catalog.reviews(shape.id) if each.id == review_id and each.resolved_at is None]
-    if not open_ones or open_ones[0].reason is not ReviewReason.DISAGREEMENT:
-        raise NotFoundError(f"shape {shape.id} has no open disagreement {review_id}; see /disagreements")
-    answer = _compared_answer(catalog, shape.id, choice.answer_id)
-    return RevisionOut.of(choose_answer(catalog, answer, caller.name))
+    if all(each.id != review_id for each in catalog.reviews(shape.id)):
+        raise NotFoundError(f"shape {shape.id} has no disagreement {review_id}; see /disagreements")
+    return RevisionOut.of(catalog.choose_answer(review_id, choice.answer_id, caller.person_id))
 
 
 def _compared_answer(catalog: Catalog, shape_id: int, answer_id: int) -> Answer:

@@ -14,7 +14,7 @@ from partwise.store.catalog import Catalog
 from partwise.store.records import Draft
 from partwise.workspace.confirming import DraftWork, begin_draft, confirm_labels, draft_work, work_to_confirm
 from partwise.workspace.labelling import keep_mesh
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, json_answer, waits_for_arrays
 from partwise_service.array_responses import SAFETENSORS_RESPONSES, entity_tag, not_modified, safetensors_response
 from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, ServiceDep, WorkspaceDep
 from partwise_service.held_leases import visible_lease
@@ -49,6 +49,7 @@ IfMatch = Annotated[
 
 
 @router.post("/leases/{lease_id}/draft")
+@waits_for_arrays
 def open_draft(
     caller: Annotator, workspace: WorkspaceDep, response: Response, lease_id: RowId, new: NewDraftRequest
 ) -> DraftOut:
@@ -130,13 +131,13 @@ def append_strokes(
     known = visible_row(caller, lambda: service.known_draft(draft_id), _missing(draft_id))
     catalog = service.workspace.catalog
     strokes = [stroke_from_document(document) for document in sent.strokes]
-    try:
     _refuse_too_much(sent.expected_sequence, strokes)
     for stroke in strokes:
         check_on_mesh(stroke.operation, known.n_faces)
+    try:
         return _tagged(response, catalog.append_strokes(draft_id, caller.person_id, sent.expected_sequence, strokes))
     except StaleDraftError as error:
-        raise _both_sides(catalog, error, sent.expected_sequence, {"refused": sent.strokes}) from error
+        raise both_sides(catalog, error, sent.expected_sequence, {"refused": sent.strokes}) from error
 
 
 @router.post("/drafts/{draft_id}/confirm", response_model=Confirmed)
@@ -158,7 +159,7 @@ async def confirm_draft(
         try:
             done = confirm_labels(workspace, work, labels, caller.person_id, n_strokes, confirming.labels_sha256)
         except StaleDraftError as error:
-            raise _both_sides(workspace.catalog, error, n_strokes, {}) from error
+            raise both_sides(workspace.catalog, error, n_strokes, {}) from error
         return json_answer(Confirmed.of(done))
 
     return await with_draft_labels(request, service, caller.person_id, read, answer)
@@ -193,7 +194,6 @@ def visible_draft(catalog: Catalog, caller: Identity, draft_id: int) -> Draft:
     return visible_row(caller, lambda: catalog.draft(draft_id), _missing(draft_id))
 
 
-def _missing(draft_id: int) -> str:
 def _refuse_too_much(expected_sequence: int, strokes: Sequence[Stroke]) -> None:
     """Limits far beyond what hands do: replaying what is on record must come to an end."""
     n_strokes = expected_sequence + len(strokes)
@@ -212,6 +212,7 @@ def _labels_tag(draft: Draft) -> str:
     return entity_tag("draft", draft.id, draft.n_strokes)
 
 
+def _missing(draft_id: int) -> str:
     return f"there is no draft {draft_id} of yours; see /drafts"
 
 
@@ -220,7 +221,7 @@ def _tagged(response: Response, draft: Draft) -> DraftOut:
     return DraftOut.of(draft)
 
 
-def _both_sides(
+def both_sides(
     catalog: Catalog, error: StaleDraftError, known_to_caller: int, theirs: Mapping[str, Any]
 ) -> ProblemError:
     """The refusal with what is on record beside what was sent."""

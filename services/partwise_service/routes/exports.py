@@ -10,7 +10,8 @@ from partwise.errors import ConflictError, NotFoundError
 from partwise.store.large_objects import read_chunks
 from partwise.store.records import Collection, Job, JobKind, JobState
 from partwise.workspace.export_archive import find_export
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
+from partwise_service.array_places import in_array_places
 from partwise_service.dependencies import Operator, WorkspaceDep, visible_collection
 from partwise_service.routes.jobs import ScopedJob
 
@@ -26,6 +27,7 @@ router = APIRouter(route_class=AnswerRoute, tags=["jobs"])
 
 
 @router.get("/jobs/{job_id}/download", responses=_RESPONSES, response_class=StreamingResponse)
+@waits_for_arrays
 def download_export(caller: Operator, workspace: WorkspaceDep, job: ScopedJob) -> StreamingResponse:
     """The archive of an export. 409 unless the job is done; 404 once the archive has expired."""
     if job.kind is not JobKind.EXPORT:
@@ -38,7 +40,7 @@ def download_export(caller: Operator, workspace: WorkspaceDep, job: ScopedJob) -
         "Content-Disposition": f'attachment; filename="{file_name(collection, job)}"',
         "Content-Length": str(found.n_bytes),
     }
-    return StreamingResponse(read_chunks(workspace.arrays, found), media_type=ZIP, headers=headers)
+    return StreamingResponse(in_array_places(read_chunks(workspace.arrays, found)), media_type=ZIP, headers=headers)
 
 
 def file_name(collection: Collection, job: Job) -> str:

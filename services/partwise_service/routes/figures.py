@@ -6,22 +6,31 @@ import numpy as np
 from fastapi import APIRouter, Query
 
 from partwise.workspace.embedding_map import embedding_key
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
 from partwise_service.dependencies import CatalogDep, ScopedCollection, ServiceDep
 from partwise_service.schemas.base import MAX_ROW_ID
-from partwise_service.schemas.figures import EmbeddingPage, ModelOut, ModelsOut
+from partwise_service.schemas.figures import EmbeddingPage, ModelOut, ModelsPage
 
+MAX_PAGE = 500
 MAX_POINTS = 20_000
 router = APIRouter(prefix="/collections/{collection_id}", route_class=AnswerRoute, tags=["figures"])
 
 
 @router.get("/models")
-def list_models(collection: ScopedCollection, catalog: CatalogDep) -> ModelsOut:
-    """Every model of the collection, newest first."""
-    return ModelsOut(items=[ModelOut.of(model) for model in catalog.models(collection.id)])
+def list_models(
+    collection: ScopedCollection,
+    catalog: CatalogDep,
+    before: Annotated[int | None, Query(ge=1, le=MAX_ROW_ID, description="`next` of the page before.")] = None,
+    limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 100,
+) -> ModelsPage:
+    """A page of the collection's models, newest first."""
+    found = catalog.models(collection.id, before=before, limit=limit)
+    next_before = str(found[-1].version) if len(found) == limit else None
+    return ModelsPage(items=[ModelOut.of(model) for model in found], next=next_before)
 
 
 @router.get("/embedding")
+@waits_for_arrays
 def show_embedding(
     collection: ScopedCollection,
     open_service: ServiceDep,

@@ -2,24 +2,29 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+import numpy as np
+from fastapi import APIRouter, Query, Request, Response
 
-from partwise.errors import ConflictError
-from partwise.workspace.confirming import confirm
-from partwise_service.answering import AnswerRoute
+from partwise.errors import ConflictError, StaleDraftError
+from partwise.store.catalog import Catalog
+from partwise.store.records import Draft
+from partwise.workspace.confirming import DraftWork, confirm_labels, work_to_confirm
+from partwise_service.answering import AnswerRoute, json_answer
 from partwise_service.dependencies import (
     Annotator,
     CatalogDep,
     Operator,
     ScopedCollection,
     ServiceDep,
-    WorkspaceDep,
 )
 from partwise_service.held_leases import leases_out, visible_lease
 from partwise_service.problems import ProblemError, ProblemKind
+from partwise_service.routes.drafts import both_sides
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.drafts import Confirm, Confirmed
 from partwise_service.schemas.queue import LeaseOut, LeasesOut, Renewal, Skip
+from partwise_service.security.identity import Identity
+from partwise_service.waiting import with_draft_labels
 
 MAX_PAGE = 500
 router = APIRouter(route_class=AnswerRoute, tags=["leases"])
@@ -79,16 +84,27 @@ def skip_lease(caller: Annotator, catalog: CatalogDep, lease_id: RowId, skip: Sk
     return leases_out(catalog, [catalog.skip_lease(lease_id, caller.person_id, skip.reason)], caller)[0]
 
 
-@router.post("/leases/{lease_id}/complete")
-def complete_lease(caller: Annotator, workspace: WorkspaceDep, lease_id: RowId, confirming: Confirm) -> Confirmed:
-    """Confirm the caller's last draft of the leased shape, which ends the lease: see /drafts/{draft_id}/confirm."""
-    lease = visible_lease(workspace.catalog, caller, lease_id)
-    drafts = workspace.catalog.drafts_of_shape(lease.shape_id)
-    own = [draft for draft in drafts if draft.person_id == caller.person_id]
-    if not own:
-        raise ConflictError(f"a lease is completed by confirming a draft but lease {lease_id} has none; open one first")
-    done = confirm(workspace, own[-1].id, caller.person_id, confirming.n_strokes, confirming.labels_sha256)
-    return Confirmed.of(done)
+@router.post("/leases/{lease_id}/complete", response_model=Confirmed)
+async def complete_lease(
+    request: Request, caller: Annotator, service: ServiceDep, lease_id: RowId, confirming: Confirm
+) -> Response:
+    """Confirm the caller's open draft of the leased shape, which ends the lease: see /drafts/{draft_id}/confirm.
+
+    Again after that, it returns the same.
+    """
+    workspace, n_strokes, seen = service.workspace, confirming.n_strokes, confirming.labels_sha256
+
+    def read() -> DraftWork:
+        return work_to_confirm(workspace, _own_draft(workspace.catalog, caller, lease_id))
+
+    def answer(work: DraftWork, labels: np.ndarray) -> Response:
+        try:
+            done = confirm_labels(workspace, work, labels, caller.person_id, n_strokes, seen)
+        except StaleDraftError as error:
+            raise both_sides(workspace.catalog, error, n_strokes, {}) from error
+        return json_answer(Confirmed.of(done))
+
+    return await with_draft_labels(request, service, caller.person_id, read, answer)
 
 
 @router.post("/leases/{lease_id}/clear")
@@ -96,3 +112,15 @@ def clear_lease(caller: Operator, catalog: CatalogDep, lease_id: RowId) -> Lease
     """Take a shape from whoever holds it, which goes on the audit trail; their draft stays."""
     visible_lease(catalog, caller, lease_id)
     return leases_out(catalog, [catalog.clear_lease(lease_id, caller.person_id)], caller)[0]
+
+
+def _own_draft(catalog: Catalog, caller: Identity, lease_id: int) -> Draft:
+    """What completing the lease confirms: the caller's open draft, or once it has ended the last one under it."""
+    lease = visible_lease(catalog, caller, lease_id)
+    drafts = [draft for draft in catalog.drafts_of_shape(lease.shape_id) if draft.person_id == caller.person_id]
+    own = [draft for draft in drafts if (draft.slot, draft.round) == (lease.slot, lease.round)]
+    if not own or (lease.outcome is None and own[-1].outcome is not None):
+        raise ConflictError(
+            f"a lease is completed by confirming a draft but lease {lease_id} has none that is open; open one first"
+        )
+    return own[-1]

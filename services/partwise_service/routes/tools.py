@@ -3,11 +3,9 @@
 They run in processes of their own (`partwise_service.tool_pool`); these handlers only wait, on the event loop.
 """
 
-import asyncio
 from dataclasses import replace
 from typing import Annotated, Any
 
-import numpy as np
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse
@@ -19,7 +17,7 @@ from partwise.workspace.confirming import DraftWork, draft_work
 from partwise.workspace.segmentations import DESCRIBE, EVALUATE
 from partwise.workspace.shapes import shape_mesh
 from partwise.workspace.workspace import Workspace
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
 from partwise_service.array_responses import SAFETENSORS, entity_tag, safetensors_response
 from partwise_service.dependencies import Annotator, ScopedShape, ServiceDep, WorkspaceDep
 from partwise_service.problems import ProblemError, ProblemKind
@@ -43,6 +41,7 @@ from partwise_service.tool_calls import (
     ToolCall,
 )
 from partwise_service.tool_pool import ToolPool
+from partwise_service.waiting import unless_gone
 
 router = APIRouter(route_class=AnswerRoute, tags=["tools"])
 TOOL_RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -60,6 +59,7 @@ def patches_call(_caller: Annotator, shape: ScopedShape, workspace: WorkspaceDep
     return PatchesCall(mesh, _row_on(workspace, shape, mesh, DESCRIBE), wish.method, wish.n_patches)
 
 
+@waits_for_arrays
 def boundaries_call(
     caller: Annotator, shape: ScopedShape, workspace: WorkspaceDep, wish: BoundariesRequest
 ) -> BoundariesCall:
@@ -98,30 +98,30 @@ def model_call(_caller: Annotator, shape: ScopedShape, workspace: WorkspaceDep, 
 
 @router.post("/shapes/{shape_id}/patches", responses=TOOL_RESPONSES, response_model=None)
 async def cut_patches(
-    request: Request, service: ServiceDep, call: Annotated[PatchesCall, Depends(patches_call)]
+    request: Request, caller: Annotator, service: ServiceDep, call: Annotated[PatchesCall, Depends(patches_call)]
 ) -> Response:
     """An over-segmentation: the patch of each face, from 0."""
-    return await _answer(request, service.tools, call)
+    return await _answer(request, service.tools, call, caller.person_id)
 
 
 @router.post("/shapes/{shape_id}/refine-boundaries", responses=TOOL_RESPONSES, response_model=None)
 async def refine_boundaries(
-    request: Request, service: ServiceDep, call: Annotated[BoundariesCall, Depends(boundaries_call)]
+    request: Request, caller: Annotator, service: ServiceDep, call: Annotated[BoundariesCall, Depends(boundaries_call)]
 ) -> Response:
     """Boundaries moved onto creases nearby, and unlabelled faces filled: a part's id for each face."""
-    return await _answer(request, service.tools, call)
+    return await _answer(request, service.tools, call, caller.person_id)
 
 
 @router.post("/shapes/{shape_id}/refine-model", responses=TOOL_RESPONSES, response_model=None)
 async def refine_model(
-    request: Request, service: ServiceDep, call: Annotated[ModelCall, Depends(model_call)]
+    request: Request, caller: Annotator, service: ServiceDep, call: Annotated[ModelCall, Depends(model_call)]
 ) -> Response:
     """The newest model's word on the shape, cut along creases: a part's id for each face."""
-    return await _answer(request, service.tools, call)
+    return await _answer(request, service.tools, call, caller.person_id)
 
 
-async def _answer(request: Request, tools: ToolPool, call: ToolCall) -> Response:
-    labels = await unless_gone(request, tools, call)
+async def _answer(request: Request, tools: ToolPool, call: ToolCall, person_id: int) -> Response:
+    labels = await unless_gone(request, tools, call, person_id)
     mesh_hash = call.mesh.mesh_hash
     accepted = request.headers.get("accept", "")
     if "application/json" in accepted and SAFETENSORS not in accepted:
@@ -130,25 +130,6 @@ async def _answer(request: Request, tools: ToolPool, call: ToolCall) -> Response
     tag = entity_tag("tool", labels.tobytes())
     about = {"mesh_hash": mesh_hash}
     return await run_sync(lambda: safetensors_response(request, {"labels": labels}, tag, "no-store", about))
-
-
-async def unless_gone(request: Request, tools: ToolPool, call: ToolCall) -> np.ndarray:
-    """The result, unless the client goes away first: then the call is dropped and whatever is answered goes nowhere."""
-    running = asyncio.ensure_future(tools.run(call))
-    gone = asyncio.ensure_future(_disconnected(request))
-    try:
-        await asyncio.wait((running, gone), return_when=asyncio.FIRST_COMPLETED)
-        if not running.done():
-            raise ProblemError(ProblemKind.UNAVAILABLE, "The client went away, so the tool was not run.")
-        return running.result()
-    finally:
-        running.cancel()
-        gone.cancel()
-
-
-async def _disconnected(request: Request) -> None:
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
 
 
 def _work(workspace: Workspace, caller: Identity, shape: Shape, draft_id: int) -> DraftWork:

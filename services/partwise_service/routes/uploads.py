@@ -17,7 +17,8 @@ from partwise.store.large_objects import CHUNK_BYTES, EXPIRING_NAME
 from partwise.store.records import JobKind
 from partwise.workspace.ingest_prefixes import plain_relative
 from partwise.workspace.uploads import UploadWriter, begin_upload, delete_upload, find_upload, uploads
-from partwise_service.answering import AnswerRoute
+from partwise_service.answering import AnswerRoute, waits_for_arrays
+from partwise_service.array_places import in_array_place
 from partwise_service.dependencies import (
     CatalogDep,
     Operator,
@@ -44,6 +45,7 @@ _BODY: dict[str, Any] = {"requestBody": {"required": True, "content": _BINARY}}
 
 
 @router.get("/collections/{collection_id}/uploads")
+@waits_for_arrays
 def list_uploads(_caller: Operator, collection: ScopedCollection, workspace: WorkspaceDep) -> UploadsOut:
     """What waits to be ingested, those that expire first first."""
     return UploadsOut(items=[UploadOut.of(upload) for upload in uploads(workspace, collection.id)])
@@ -62,13 +64,13 @@ async def send_upload(
     settings, workspace = open_service.settings, open_service.workspace
     ttl = timedelta(hours=settings.upload_ttl_h)
     begin = partial(begin_upload, workspace, collection.id, name, caller.name, ttl, settings.max_uploads)
-    writer = await run_sync(begin)
+    writer = await in_array_place(begin)
     try:
         await _receive(request, writer)
-        upload = await run_sync(writer.finish)
+        upload = await in_array_place(writer.finish)
     except BaseException:
         with CancelScope(shield=True):
-            await run_sync(writer.abandon)
+            await in_array_place(writer.abandon)
         raise
     about = {"upload_id": upload.name, "name": name, "n_bytes": upload.n_bytes, "sha256": upload.sha256}
     audit = workspace.catalog.append_audit
@@ -77,6 +79,7 @@ async def send_upload(
 
 
 @router.delete("/collections/{collection_id}/uploads/{upload_id}", status_code=204)
+@waits_for_arrays
 def remove_upload(caller: Operator, collection: ScopedCollection, workspace: WorkspaceDep, upload_id: UploadId) -> None:
     """Delete an upload. A job that is about to ingest it will fail."""
     delete_upload(workspace, find_upload(workspace, collection.id, upload_id))
@@ -130,7 +133,7 @@ async def _receive(request: Request, writer: UploadWriter) -> None:
             pending += piece
             n_bytes += len(piece)
             if len(pending) >= CHUNK_BYTES:
-                await run_sync(writer.write, bytes(pending))
+                await in_array_place(partial(writer.write, bytes(pending)))
                 pending.clear()
     except TimeoutError as error:
         raise ProblemError(ProblemKind.MALFORMED, f"Nothing came for {IDLE_S:g} seconds; send it again.") from error
@@ -138,4 +141,4 @@ async def _receive(request: Request, writer: UploadWriter) -> None:
         raise ProblemError(ProblemKind.MALFORMED, "The upload was broken off; send it again.") from error
     if not n_bytes:
         raise ProblemError(ProblemKind.INVALID, "An upload must have a body: the file's bytes, as they are.")
-    await run_sync(writer.write, bytes(pending))
+    await in_array_place(partial(writer.write, bytes(pending)))

@@ -33,17 +33,30 @@ def fold(
     schema: PartSchema,
     expected_sha256: str | None = None,
 ) -> FoldedLog:
-    """The labels that the log leaves, checked for a revision under `schema`.
-
-    `expected_sha256` is what the annotator saw: a client that painted otherwise is noticed before its work is
-    committed. A part that strokes used but that no face has in the end may be missing from the schema.
+    """The labels that the log leaves, replayed and checked for a revision under `schema`: see `checked_fold`.
 
     Raises
     ------
     LabelError : a log of another mesh or from other labels, a stroke that cannot be done, a part not in the schema.
     ConflictError : the labels are not the expected ones.
     """
-    labels = checked_labels(replay(mesh, base_labels, log), mesh.n_faces, schema)
+    return checked_fold(log, replay(mesh, base_labels, log), schema, expected_sha256)
+
+
+def checked_fold(
+    log: StrokeLog, replayed: UInt16[np.ndarray, " m"], schema: PartSchema, expected_sha256: str | None = None
+) -> FoldedLog:
+    """Labels that replaying the log has left, checked for a revision under `schema`.
+
+    `expected_sha256` is what the annotator saw: a client that painted otherwise is noticed before its work is
+    committed. A part that strokes used but that no face has in the end may be missing from the schema.
+
+    Raises
+    ------
+    LabelError : not one label for each face of the log, a part not in the schema.
+    ConflictError : the labels are not the expected ones.
+    """
+    labels = checked_labels(replayed, log.n_faces, schema)
     sha256 = labels_sha256(labels)
     if expected_sha256 is not None and sha256 != expected_sha256:
         raise ConflictError(

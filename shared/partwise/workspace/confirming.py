@@ -9,19 +9,18 @@ from jaxtyping import UInt16
 from partwise.errors import ConflictError, StaleDraftError
 from partwise.labels.annotation_cost import annotation_cost
 from partwise.labels.encoding import labels_sha256
-from partwise.labels.fold import FoldedLog, fold
+from partwise.labels.fold import FoldedLog, checked_fold
+from partwise.labels.operations import Paint, SegmentWide
+from partwise.labels.replay import replay
 from partwise.labels.stroke_json import stroke_from_document
 from partwise.labels.strokes import Stroke, StrokeLog
 from partwise.mesh import TriMesh
-from partwise.store.catalog import Catalog
 from partwise.store.meshes import keep_mesh
 from partwise.store.records import (
-    Answer,
     Closeness,
     Confirmation,
     Draft,
     DraftOutcome,
-    LabelRevision,
     Lease,
     LeasePurpose,
     Mesh,
@@ -29,7 +28,6 @@ from partwise.store.records import (
     NewConfirmation,
     NewConsensus,
     NewDraft,
-    NewRevision,
     RevisionKind,
 )
 from partwise.workspace.accepting import settle_rechecks
@@ -38,6 +36,7 @@ from partwise.workspace.shapes import load_mesh, shape_mesh
 from partwise.workspace.workspace import Workspace
 
 _PAGE = 10_000
+_QUICK = 50_000_000  # faces, counted again for each stroke: any may touch all
 _TRIES = 5  # each fails only if another of the shape's labels came in while this was compared
 
 
@@ -54,6 +53,11 @@ class DraftWork:
     base_labels: UInt16[np.ndarray, " m"]
     log: StrokeLog
 
+    @property
+    def is_quickly_replayed(self) -> bool:
+        """Whether replaying takes no region that must be grown, and is over in a fraction of a second."""
+        is_grown = any(isinstance(stroke.operation, Paint | SegmentWide) for stroke in self.log.strokes)
+        return not is_grown and len(self.log.strokes) * self.log.n_faces <= _QUICK
 
     def replayed(self) -> UInt16[np.ndarray, " m"]:
         """The labels that the strokes leave. Raises as `replay`."""
@@ -114,21 +118,44 @@ def confirm(
         closed, other labels than the person saw, or the shape is with someone else.
     LabelError : strokes that cannot be replayed, or a part that the schema has lost.
     """
-    draft = workspace.catalog.draft(draft_id)
+    work = work_to_confirm(workspace, workspace.catalog.draft(draft_id))
+    return confirm_labels(workspace, work, work.replayed(), person_id, n_strokes, expected_sha256)
+
+
+def work_to_confirm(workspace: Workspace, draft: Draft) -> DraftWork:
+    """What a draft that is about to be confirmed consists of. Raises ConflictError if it is discarded."""
     if draft.outcome is DraftOutcome.DISCARDED:
-        raise ConflictError(f"a draft must be open to be confirmed but draft {draft_id} is discarded; open another")
-    confirmation = _confirmed(workspace, draft, person_id, n_strokes, expected_sha256)
+        raise ConflictError(f"a draft must be open to be confirmed but draft {draft.id} is discarded; open another")
+    return draft_work(workspace, draft)
+
+
+def confirm_labels(
+    workspace: Workspace,
+    work: DraftWork,
+    labels: UInt16[np.ndarray, " m"],
+    person_id: int,
+    n_strokes: int,
+    expected_sha256: str | None = None,
+) -> Confirmation:
+    """Commits the labels that the draft's strokes leave, which may have taken a while; all else as `confirm`."""
+    confirmation = _confirmed(workspace, work, labels, person_id, n_strokes, expected_sha256)
     if confirmation.revision_id is not None:
-        settle_rechecks(workspace, draft.collection_id, confirmation.shape_id)
+        settle_rechecks(workspace, work.draft.collection_id, confirmation.shape_id)
     return confirmation
 
 
 def _confirmed(
-    workspace: Workspace, draft: Draft, person_id: int, n_strokes: int, expected_sha256: str | None
+    workspace: Workspace,
+    work: DraftWork,
+    labels: UInt16[np.ndarray, " m"],
+    person_id: int,
+    n_strokes: int,
+    expected_sha256: str | None,
 ) -> Confirmation:
-    work = draft_work(workspace, draft)
+    draft = work.draft
+    _refuse_later_strokes(workspace, work, n_strokes)
     schema = workspace.catalog.parts(draft.collection_id)
-    folded = fold(work.log, work.mesh, work.base_labels, schema, expected_sha256)
+    folded = checked_fold(work.log, labels, schema, expected_sha256)
     keep_mesh(workspace.catalog, workspace.arrays, work.stored)
     cost = annotation_cost(work.log.strokes, opened_at=draft.created_at)
     new = partial(NewConfirmation, draft.id, person_id, n_strokes, folded.labels, folded.schema_version, cost=cost)
@@ -137,6 +164,25 @@ def _confirmed(
     if draft.purpose is LeasePurpose.LABEL or draft.outcome is not None:
         return workspace.catalog.confirm_draft(new())
     return _confirm_one_of_several(workspace, work, folded, new)
+
+
+def _refuse_later_strokes(workspace: Workspace, work: DraftWork, n_strokes: int) -> None:
+    """Strokes that came on record after the log was read are in no labels, so that they cannot be confirmed with it."""
+    draft, n_read = work.draft, len(work.log.strokes)
+    if draft.outcome is not None or n_strokes <= n_read:
+        return
+    head = workspace.catalog.head_revision(draft.shape_id)
+    state = {
+        "draft_id": draft.id,
+        "n_strokes": n_read,
+        "base_revision": draft.base_revision,
+        "seen_revision": draft.seen_revision,
+        "head_revision": None if head is None else head.id,
+        "mesh_hash": draft.mesh_hash,
+        "outcome": None,
+    }
+    message = f"all strokes are confirmed but draft {draft.id} had {n_read}, not {n_strokes}; send them and try again"
+    raise StaleDraftError(message, state)
 
 
 def _confirm_one_of_several(
@@ -173,27 +219,6 @@ def _blind_check(workspace: Workspace, work: DraftWork, folded: FoldedLog) -> Ne
     if reference is None or reference.mesh_hash != work.draft.mesh_hash:
         return None
     return NewBlindCheck(reference.id, closeness(work.mesh, folded.labels, workspace.catalog.labels(reference.id)))
-
-
-def choose_answer(catalog: Catalog, answer: Answer, reviewer: str) -> LabelRevision:
-    """Makes one of several people's labels the shape's, in the name of who gave them.
-
-    Raises
-    ------
-    LabelError : a part that they name is gone, or their mesh.
-    """
-    head = catalog.head_revision(answer.shape_id)
-    revision = NewRevision(
-        answer.shape_id,
-        answer.mesh_hash,
-        RevisionKind.HUMAN,
-        answer.person_id,
-        answer.schema_version,
-        catalog.answer_labels(answer.id),
-        None if head is None else head.id,
-    )
-    catalog.append_audit(reviewer, "choose labels", f"shape {answer.shape_id}", {"answer_id": answer.id})
-    return catalog.add_revision(revision)
 
 
 def _strokes(workspace: Workspace, draft: Draft) -> list[Stroke]:

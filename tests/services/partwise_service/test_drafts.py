@@ -1,7 +1,9 @@
 """Drafts: strokes acknowledged once they are committed, both sides of a conflict, and what is confirmed."""
 
 import json
+from contextlib import ExitStack
 from dataclasses import asdict
+from datetime import UTC, datetime
 from uuid import uuid4
 
 import numpy as np
@@ -10,7 +12,13 @@ from safetensors.numpy import load
 
 from partwise.labels.encoding import labels_sha256
 from partwise.labels.label_delta import LabelDelta
+from partwise.labels.operations import Paint
+from partwise.labels.strokes import Stroke
+from partwise.segmentation.paint import Brush
 from partwise.store.records import NewRevision, RevisionKind, Role
+from partwise.workspace import confirming
+from partwise_service.app import MAX_REPLAYS
+from partwise_service.routes.drafts import MAX_SEEDS, MAX_STROKES_OF_DRAFT
 
 AT = "2026-11-22T12:00:00Z"
 JSON = {"Content-Type": "application/json"}
@@ -46,6 +54,18 @@ class Bench:
             "author_id": self.person_id,
             "at": AT,
         }
+
+    def painted(self, sequence: int, n_seeds: int = 1) -> dict:
+        """A stroke with a brush as wide as the shape, over what has no label."""
+        return self._grown(sequence, kind="paint", seeds=[0] * n_seeds, radius=1.0, min_cosine=None, only_over=0)
+
+    def filled(self, sequence: int) -> dict:
+        return self._grown(sequence, kind="segment_wide", seed=0)
+
+    def _grown(self, sequence: int, **fields) -> dict:
+        stroke = {**self.stroke(sequence), **fields}
+        del stroke["runs"]
+        return stroke
 
     def send(self, *strokes: dict, expected: int | None = None):
         sequence = strokes[0]["sequence"] if expected is None else expected
@@ -178,6 +198,82 @@ def test_labels_of_a_draft(bench) -> None:
     assert bench.caller.get(f"{bench.path}/labels", headers=held).status_code == 200
 
 
+class TestTools:
+    """Strokes that paint or fill are replayed in the tools' processes, where they hold up nobody else."""
+
+    @pytest.fixture
+    def calls(self, app, monkeypatch) -> list:
+        """What the tools are asked; they answer with handles everywhere."""
+        asked = []
+
+        async def run(call, person_id: int) -> np.ndarray:
+            asked.append((call, person_id))
+            return np.full(call.mesh.n_faces, 2, dtype=np.uint16)
+
+        monkeypatch.setattr(app.state.service.tools, "run", run)
+        return asked
+
+    def test_labels_are_theirs(self, bench, calls) -> None:
+        bench.send(bench.painted(0))
+        assert load(bench.caller.get(f"{bench.path}/labels").content)["labels"].tolist() == [2, 2, 2, 2]
+        [(call, person_id)] = calls
+        assert (len(call.draft.log.strokes), person_id) == (1, bench.person_id)
+
+    @pytest.mark.parametrize("how", ["confirm", "complete"])
+    def test_what_they_leave_is_confirmed(self, bench, calls, workspace, how) -> None:
+        bench.send(bench.filled(0))
+        path, headers = f"{bench.path}/confirm", {"If-Match": '"1"'}
+        answer = (
+            bench.caller.post(path, json={}, headers=headers)
+            if how == "confirm"
+            else bench.caller.post(f"/leases/{bench.lease['id']}/complete", json={"n_strokes": 1})
+        )
+        assert (answer.status_code, len(calls)) == (200, 1)
+        assert workspace.catalog.labels(workspace.catalog.head_revision(bench.shape_id).id).tolist() == [2, 2, 2, 2]
+
+    def test_a_log_that_grows_no_region_needs_none(self, bench, calls) -> None:
+        bench.send(*(bench.stroke(n, n) for n in range(4)))
+        assert load(bench.caller.get(f"{bench.path}/labels").content)["labels"].tolist() == [1, 1, 1, 1]
+        assert (bench.confirm(4).status_code, calls) == (200, [])
+
+    def test_a_log_that_is_long_for_its_mesh_needs_them(self, bench, calls, monkeypatch) -> None:
+        monkeypatch.setattr(confirming, "_QUICK", 7)
+        bench.send(bench.stroke(0), bench.stroke(1, 1))
+        assert load(bench.caller.get(f"{bench.path}/labels").content)["labels"].tolist() == [2, 2, 2, 2]
+
+    def test_they_leave_what_the_strokes_say(self, bench, mugs) -> None:
+        bench.send(bench.stroke(0, 3, 2), bench.painted(1))
+        labels = load(bench.caller.get(f"{bench.path}/labels").content)["labels"]
+        assert labels.tolist() == [1, 1, 1, 2]
+        assert bench.confirm(2, labels_sha256=labels_sha256(labels)).json()["labels_sha256"] == labels_sha256(labels)
+
+    def test_strokes_that_they_refuse_are_told(self, bench, workspace) -> None:
+        strange = Stroke(uuid4(), 0, None, bench.person_id, datetime.now(UTC), Paint((99,), Brush(0.1), 1))
+        workspace.catalog.append_strokes(bench.draft["id"], bench.person_id, 0, [strange])  # from before it was noticed
+        assert bench.confirm(1).status_code == 422
+
+    def test_one_person_has_few_drafts_read_at_once(self, bench, app) -> None:
+        with ExitStack() as reading:
+            for _ in range(MAX_REPLAYS):
+                reading.enter_context(app.state.service.replays.one_more(bench.person_id))
+            answer = bench.caller.get(f"{bench.path}/labels")
+            assert (answer.status_code, "retry-after" in answer.headers) == (429, True)
+        assert bench.caller.get(f"{bench.path}/labels").status_code == 200
+
+
+def test_a_stroke_may_have_many_seeds_but_not_any_number(bench) -> None:
+    assert bench.send(bench.painted(0, MAX_SEEDS)).status_code == 200
+    refused = bench.send(bench.painted(1, MAX_SEEDS + 1))
+    assert (refused.status_code, "10,000 seeds" in refused.json()["detail"]) == (422, True)
+
+
+def test_a_draft_may_have_many_strokes_but_not_any_number(bench) -> None:
+    stale = bench.send(bench.stroke(MAX_STROKES_OF_DRAFT - 1))
+    refused = bench.send(bench.stroke(MAX_STROKES_OF_DRAFT))
+    assert (stale.status_code, refused.status_code) == (409, 422)
+    assert "100,000 strokes" in refused.json()["detail"]
+
+
 def test_confirming_makes_the_strokes_labels(bench) -> None:
     bench.send(*(bench.stroke(n, n) for n in range(4)))
     done = bench.confirm(4).json()
@@ -197,6 +293,33 @@ def test_completing_a_lease_confirms_its_draft(bench) -> None:
     bench.send(*(bench.stroke(n, n) for n in range(4)))
     answer = bench.caller.post(f"/leases/{bench.lease['id']}/complete", json={"n_strokes": 4})
     assert answer.json()["draft_id"] == bench.draft["id"]
+
+
+def test_completing_a_lease_again_returns_the_same(bench) -> None:
+    bench.send(*(bench.stroke(n, n) for n in range(4)))
+    path, body = f"/leases/{bench.lease['id']}/complete", {"n_strokes": 4}
+    first = bench.caller.post(path, json=body)
+    assert (first.status_code, bench.caller.post(path, json=body).json()) == (200, first.json())
+
+
+def test_a_refused_completion_has_both_sides(bench) -> None:
+    unknown = bench.stroke(1, 1)
+    bench.send(bench.stroke(0), unknown)
+    answer = bench.caller.post(f"/leases/{bench.lease['id']}/complete", json={"n_strokes": 1})
+    assert (answer.status_code, answer.json()["state"]["n_strokes"]) == (409, 2)
+    assert [each["id"] for each in answer.json()["recorded"]] == [unknown["id"]]
+
+
+def test_labels_that_were_sent_back_are_not_completed_by_the_draft_before(bench, workspace, reviewer, mugs) -> None:
+    bench.send(*(bench.stroke(n, n) for n in range(4)))
+    bench.confirm(4)
+    sent_back = reviewer.post(f"/shapes/{bench.shape_id}/reject", json={"note": "the rim", "for_author": True})
+    assert sent_back.status_code == 200
+    body = {"collection_id": mugs.collection_id, "shape_ids": [bench.shape_id]}
+    lease = bench.caller.post("/queue/claim", json=body).json()["items"][0]
+    answer = bench.caller.post(f"/leases/{lease['id']}/complete", json={"n_strokes": 4})
+    assert (answer.status_code, "open one first" in answer.json()["detail"]) == (409, True)
+    assert [each["id"] for each in bench.caller.get("/leases").json()["items"]] == [lease["id"]]
 
 
 def test_a_lease_without_a_draft_cannot_be_completed(annotator, mugs) -> None:

@@ -13,10 +13,11 @@ from starlette.requests import Request
 from partwise.errors import ParameterError
 from partwise.store.records import Mesh
 from partwise_service.problems import ProblemError
-from partwise_service.routes.tools import unless_gone
 from partwise_service.tool_calls import PatchesCall
 from partwise_service.tool_pool import Failed, PoolLimits, Refused, ToolPool
+from partwise_service.waiting import unless_gone
 
+ANN, BEN = 1, 2
 KILL, REFUSE, FAIL, MISS, HANG = 1001, 1002, 1003, 1004, 1005
 LIMITS = PoolLimits(n_processes=1, max_queued=1, max_shapes=2, timeout_s=60.0)
 
@@ -61,17 +62,17 @@ def tools():
 
 def test_calls_are_answered_one_after_the_other(tools) -> None:
     async def calls() -> list[int]:
-        return [int((await tools.run(call(n)))[1]) for n in (3, 1, 2)]
+        return [int((await tools.run(call(n), ANN))[1]) for n in (3, 1, 2)]
 
     assert asyncio.run(calls()) == [3, 1, 2]
 
 
 def test_more_than_may_wait_are_told_to_come_back(tools) -> None:
     async def calls() -> ProblemError:
-        waiting = [asyncio.ensure_future(tools.run(call(n))) for n in (1, 2)]
+        waiting = [asyncio.ensure_future(tools.run(call(n), ANN)) for n in (1, 2)]
         await asyncio.sleep(0)
         with pytest.raises(ProblemError) as refused:
-            await tools.run(call(3))
+            await tools.run(call(3), ANN)
         assert [int(each[1]) for each in await asyncio.gather(*waiting)] == [1, 2]
         return refused.value
 
@@ -80,29 +81,58 @@ def test_more_than_may_wait_are_told_to_come_back(tools) -> None:
     assert int(problem.headers["Retry-After"]) > 0
 
 
+def test_nobody_has_more_than_one_process_at_a_time() -> None:
+    async def calls(tools: ToolPool) -> None:
+        own = [asyncio.ensure_future(tools.run(call(n), ANN)) for n in (1, 2)]
+        await asyncio.sleep(0)
+        assert (tools.n_idle, tools.n_waiting) == (1, 1)
+        assert (await tools.run(call(3), BEN))[1] == 3
+        assert [int((await each)[1]) for each in own] == [1, 2]
+        assert (tools.n_idle, tools.n_waiting) == (2, 0)
+
+    with closing(ToolPool("memory", PoolLimits(2, 8, 2, 60.0), answer_as_told)) as two:
+        asyncio.run(calls(two))
+
+
+def test_whoever_has_as_many_calls_as_they_may_is_told_and_nobody_else() -> None:
+    async def calls(tools: ToolPool) -> ProblemError:
+        own = [asyncio.ensure_future(tools.run(call(n), ANN)) for n in (1, 2)]
+        await asyncio.sleep(0)
+        with pytest.raises(ProblemError) as refused:
+            await tools.run(call(3), ANN)
+        assert (await tools.run(call(4), BEN))[1] == 4
+        await asyncio.gather(*own)
+        assert (await tools.run(call(5), ANN))[1] == 5
+        return refused.value
+
+    with closing(ToolPool("memory", PoolLimits(1, 8, 2, 60.0, max_own=2), answer_as_told)) as one:
+        problem = asyncio.run(calls(one))
+    assert (problem.kind.status, "Retry-After" in problem.headers) == (429, True)
+
+
 def test_a_call_that_nobody_waits_for_any_more_is_dropped(tools) -> None:
     async def calls() -> None:
-        running = asyncio.ensure_future(tools.run(call(1)))
+        running = asyncio.ensure_future(tools.run(call(1), ANN))
         await asyncio.sleep(0)
-        waiting = asyncio.ensure_future(tools.run(call(KILL)))  # if it ran, the process would be another
+        waiting = asyncio.ensure_future(tools.run(call(KILL), ANN))  # if it ran, the process would be another
         await asyncio.sleep(0)
         assert tools.n_waiting == 1
         waiting.cancel()
         await asyncio.sleep(0)
         assert tools.n_waiting == 0
         pid = (await running)[0]
-        assert (await tools.run(call(2)))[0] == pid
+        assert (await tools.run(call(2), ANN))[0] == pid
 
     asyncio.run(calls())
 
 
 def test_a_running_calls_result_is_thrown_away_and_its_process_used_again(tools) -> None:
     async def calls() -> None:
-        pid = (await tools.run(call(1)))[0]
-        running = asyncio.ensure_future(tools.run(call(2)))
+        pid = (await tools.run(call(1), ANN))[0]
+        running = asyncio.ensure_future(tools.run(call(2), ANN))
         await asyncio.sleep(0)
         running.cancel()
-        assert (await tools.run(call(3))).tolist() == [pid, 3]
+        assert (await tools.run(call(3), ANN)).tolist() == [pid, 3]
         assert tools.n_idle == 1
 
     asyncio.run(calls())
@@ -110,11 +140,11 @@ def test_a_running_calls_result_is_thrown_away_and_its_process_used_again(tools)
 
 def test_a_running_call_that_nobody_waits_for_is_ended_when_it_goes_on() -> None:
     async def calls(tools: ToolPool) -> None:
-        pid = (await tools.run(call(1)))[0]
-        running = asyncio.ensure_future(tools.run(call(HANG)))
+        pid = (await tools.run(call(1), ANN))[0]
+        running = asyncio.ensure_future(tools.run(call(HANG), ANN))
         await asyncio.sleep(0)
         running.cancel()
-        told = await tools.run(call(2))  # waits for the only process
+        told = await tools.run(call(2), ANN)  # waits for the only process
         assert (told[0] != pid, told[1]) == (True, 2)
 
     with closing(ToolPool("memory", PoolLimits(1, 1, 2, 60.0, abandoned_s=0.01), answer_as_told)) as tools:
@@ -123,36 +153,36 @@ def test_a_running_call_that_nobody_waits_for_is_ended_when_it_goes_on() -> None
 
 def test_a_call_that_is_cancelled_as_its_turn_comes_gives_the_process_back(tools) -> None:
     async def calls() -> None:
-        running = asyncio.ensure_future(tools.run(call(1)))
+        running = asyncio.ensure_future(tools.run(call(1), ANN))
         await asyncio.sleep(0)
-        waiting = asyncio.ensure_future(tools.run(call(2)))
+        waiting = asyncio.ensure_future(tools.run(call(2), ANN))
         await asyncio.sleep(0)
-        tools._line[0].add_done_callback(lambda _: waiting.cancel())
+        tools._line[0].place.add_done_callback(lambda _: waiting.cancel())
         await running
         with pytest.raises(asyncio.CancelledError):
             await waiting
-        assert (await tools.run(call(3)))[1] == 3
+        assert (await tools.run(call(3), ANN))[1] == 3
 
     asyncio.run(calls())
 
 
 def test_a_process_that_dies_costs_its_call_only(tools) -> None:
     async def calls() -> None:
-        pid = (await tools.run(call(1)))[0]
+        pid = (await tools.run(call(1), ANN))[0]
         with pytest.raises(ProblemError) as lost:
-            await tools.run(call(KILL))
+            await tools.run(call(KILL), ANN)
         assert (lost.value.kind.status, "Retry-After" in lost.value.headers) == (503, True)
-        assert (await tools.run(call(2)))[0] != pid
+        assert (await tools.run(call(2), ANN))[0] != pid
 
     asyncio.run(calls())
 
 
 def test_a_process_that_died_while_idle_costs_nothing(tools) -> None:
     async def calls() -> None:
-        pid = int((await tools.run(call(1)))[0])
+        pid = int((await tools.run(call(1), ANN))[0])
         os.kill(pid, signal.SIGKILL)
         tools._processes[0]._process.join()
-        assert (await tools.run(call(2)))[1] == 2
+        assert (await tools.run(call(2), ANN))[1] == 2
 
     asyncio.run(calls())
 
@@ -160,7 +190,7 @@ def test_a_process_that_died_while_idle_costs_nothing(tools) -> None:
 def test_a_call_that_takes_too_long_is_given_up() -> None:
     async def calls(tools: ToolPool) -> None:
         with pytest.raises(ProblemError) as lost:
-            await tools.run(call(HANG))
+            await tools.run(call(HANG), ANN)
         assert lost.value.kind.status == 503
 
     with closing(ToolPool("memory", PoolLimits(1, 1, 2, timeout_s=0.01), answer_as_told)) as impatient:
@@ -171,17 +201,17 @@ def test_a_call_that_takes_too_long_is_given_up() -> None:
 def test_what_a_tool_raises_comes_back(tools, told, error) -> None:
     async def calls() -> None:
         with pytest.raises(error):
-            await tools.run(call(told))
+            await tools.run(call(told), ANN)
 
     asyncio.run(calls())
 
 
 def test_a_shape_goes_to_the_process_that_knows_it() -> None:
     async def calls(tools: ToolPool) -> None:
-        first = (await tools.run(call(1, "a" * 64)))[0]
-        second = (await tools.run(call(1, "b" * 64)))[0]
+        first = (await tools.run(call(1, "a" * 64), ANN))[0]
+        second = (await tools.run(call(1, "b" * 64), ANN))[0]
         assert first != second
-        assert [(await tools.run(call(1, name * 64)))[0] for name in "bab"] == [second, first, second]
+        assert [(await tools.run(call(1, name * 64), ANN))[0] for name in "bab"] == [second, first, second]
 
     with closing(ToolPool("memory", PoolLimits(2, 1, 2, 60.0), answer_as_told)) as two:
         asyncio.run(calls(two))
@@ -192,14 +222,14 @@ def test_a_client_that_goes_away_takes_its_call_out_of_the_line(tools) -> None:
         return {"type": "http.disconnect"}
 
     async def calls() -> None:
-        running = asyncio.ensure_future(tools.run(call(1)))
+        running = asyncio.ensure_future(tools.run(call(1), ANN))
         await asyncio.sleep(0)
         with pytest.raises(ProblemError, match="went away"):
-            await unless_gone(Request({"type": "http"}, gone), tools, call(KILL))
+            await unless_gone(Request({"type": "http"}, gone), tools, call(KILL), ANN)
         await asyncio.sleep(0)
         assert tools.n_waiting == 0
         pid = (await running)[0]
-        assert (await tools.run(call(2)))[0] == pid
+        assert (await tools.run(call(2), ANN))[0] == pid
 
     asyncio.run(calls())
 
@@ -212,6 +242,6 @@ def test_a_client_that_stays_gets_the_result(tools) -> None:
             await stays.wait()
             return {"type": "http.disconnect"}
 
-        return int((await unless_gone(Request({"type": "http"}, receive), tools, call(7)))[1])
+        return int((await unless_gone(Request({"type": "http"}, receive), tools, call(7), ANN))[1])
 
     assert asyncio.run(calls()) == 7

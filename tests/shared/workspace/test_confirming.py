@@ -12,7 +12,7 @@ from partwise.labels.operations import Assign
 from partwise.labels.strokes import Stroke
 from partwise.store.records import Confirmation, Draft, NewClaim, RevisionKind
 from partwise.store.reviews import ReviewReason
-from partwise.workspace.confirming import begin_draft, confirm, draft_work
+from partwise.workspace.confirming import begin_draft, confirm, confirm_labels, draft_work, work_to_confirm
 from partwise.workspace.labelling import commit_labels
 
 
@@ -69,6 +69,18 @@ def test_labels_that_the_person_did_not_see_are_not_confirmed(filled) -> None:
         confirm(filled.workspace, draft.id, draft.person_id, 3, "0" * 64)
     with pytest.raises(StaleDraftError, match="has 3, not 2"):
         confirm(filled.workspace, draft.id, draft.person_id, 2)
+    assert filled.workspace.catalog.revisions(draft.shape_id) == []
+
+
+def test_a_stroke_that_comes_while_the_log_is_replayed_is_not_confirmed_unseen(filled) -> None:
+    draft = _paint(filled, _begun(filled.described(), "ann"), [1, 1])
+    work = work_to_confirm(filled.workspace, draft)
+    at = datetime(2026, 1, 31, 12, tzinfo=UTC)
+    late = Stroke(uuid.uuid4(), 2, None, draft.person_id, at, Assign(((2, 1),), 2))
+    filled.workspace.catalog.append_strokes(draft.id, draft.person_id, 2, [late])
+    with pytest.raises(StaleDraftError, match="had 2, not 3") as refused:
+        confirm_labels(filled.workspace, work, work.replayed(), draft.person_id, 3)
+    assert (refused.value.state["draft_id"], refused.value.state["n_strokes"]) == (draft.id, 2)
     assert filled.workspace.catalog.revisions(draft.shape_id) == []
 
 
