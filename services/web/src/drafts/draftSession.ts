@@ -105,7 +105,7 @@ export class DraftSession<L extends LeaseRecord = LeaseRecord> {
 
   /** Something may work again: the network, the log in, the computer after sleep. */
   wake(): void {
-    if (this.canEdit) this.sender.resume();
+    if (this.canEdit) this.sender.wake();
     void this.keeper.renew();
   }
 

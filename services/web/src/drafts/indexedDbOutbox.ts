@@ -1,6 +1,7 @@
 /** The outbox in IndexedDB, which outlives the tab and the browser. */
 import { type DBSchema, type IDBPDatabase, openDB } from "idb";
 import type { StrokeJson } from "../labels/strokes";
+import { Observable } from "./observable";
 import type { DraftIdentity, KeptAside, Outbox, SetAside } from "./outbox";
 
 interface Entry {
@@ -20,11 +21,15 @@ interface Schema extends DBSchema {
 const VERSION = 1;
 
 export class IndexedDbOutbox implements Outbox {
+  readonly asidesChanged = new Observable(0);
+  private isAsked = false;
   private database: Promise<IDBPDatabase<Schema>> | null = null;
 
   constructor(private readonly name = "partwise") {}
 
   async add(draft: DraftIdentity, stroke: StrokeJson): Promise<void> {
+    if (!this.isAsked) askToPersist();
+    this.isAsked = true;
     const database = await this.open();
     const transaction = database.transaction("outbox", "readwrite", { durability: "strict" });
     const entry = { key: draft.key, id: stroke.id, at: Date.now(), draft, stroke };
@@ -67,6 +72,7 @@ export class IndexedDbOutbox implements Outbox {
       ...aside.strokes.map((stroke) => outbox.delete([aside.draft.key, stroke.id])),
       transaction.done,
     ]);
+    this.asidesChanged.set(this.asidesChanged.get() + 1);
   }
 
   async asides(): Promise<KeptAside[]> {
@@ -75,6 +81,7 @@ export class IndexedDbOutbox implements Outbox {
 
   async forgetAside(id: number): Promise<void> {
     await (await this.open()).delete("aside", id);
+    this.asidesChanged.set(this.asidesChanged.get() + 1);
   }
 
   async drafts(): Promise<DraftIdentity[]> {
@@ -97,4 +104,10 @@ export class IndexedDbOutbox implements Outbox {
     });
     return this.database;
   }
+}
+
+/** That the browser does not clear what is kept when the disk runs full. Pages that are not secure have nobody to ask. */
+function askToPersist(): void {
+  const storage: Partial<StorageManager> | undefined = globalThis.navigator?.storage;
+  storage?.persist?.().catch(() => {});
 }

@@ -1,5 +1,6 @@
 /** What is kept on this device until the service has it: strokes on their way, and versions that were set aside. */
 import type { StrokeJson } from "../labels/strokes";
+import type { Observable } from "./observable";
 
 /**
  * Which draft strokes are of. `key` also tells drafts of two workspaces apart that are served, one after the other, at
@@ -9,6 +10,8 @@ export interface DraftIdentity {
   readonly key: string;
   readonly draftId: number;
   readonly shapeId: number;
+  /** Strokes of one mesh fit no other. */
+  readonly meshHash: string;
   readonly collectionId: number;
   readonly personId: number;
 }
@@ -16,6 +19,7 @@ export interface DraftIdentity {
 export function draftIdentity(draft: {
   readonly id: number;
   readonly shape_id: number;
+  readonly mesh_hash: string;
   readonly collection_id: number;
   readonly person_id: number;
   readonly created_at: string;
@@ -24,6 +28,7 @@ export function draftIdentity(draft: {
     key: `${draft.id}@${draft.created_at}`,
     draftId: draft.id,
     shapeId: draft.shape_id,
+    meshHash: draft.mesh_hash,
     collectionId: draft.collection_id,
     personId: draft.person_id,
   };
@@ -39,10 +44,10 @@ export type AsideReason =
   /** The service refuses them. */
   | "refused";
 
-/** Strokes that are in no log. `first` is how many strokes came before them. */
+/** Strokes that are in no log, with those that came before them: so it is known which faces they changed. */
 export interface SetAside {
   readonly draft: DraftIdentity;
-  readonly first: number;
+  readonly before: readonly StrokeJson[];
   readonly at: number;
   readonly reason: AsideReason;
   readonly strokes: readonly StrokeJson[];
@@ -52,7 +57,14 @@ export interface KeptAside extends SetAside {
   readonly id: number;
 }
 
+/** Whether what was set aside can be put on a draft: it is the same person's, on the same mesh of the same shape. */
+export function fits({ draft: of }: SetAside, draft: DraftIdentity): boolean {
+  return of.personId === draft.personId && of.shapeId === draft.shapeId && of.meshHash === draft.meshHash;
+}
+
 export interface Outbox {
+  /** How often versions were set aside or forgotten through this outbox. */
+  readonly asidesChanged: Observable<number>;
   /** Keeps a stroke. Doing it again changes nothing. Raises what the browser raises where it has no room. */
   add(draft: DraftIdentity, stroke: StrokeJson): Promise<void>;
   /** What is kept of a draft, by place in the log and, for one place, as it came. */

@@ -12,17 +12,23 @@ import { newStroke, type StrokeJson, type StrokePlace } from "../labels/strokes"
  * Paint and regions depend on the labels that they meet, so doing them again could take other faces than the person saw.
  * What was undone within `mine` is left out, and what changes nothing on top is no stroke.
  *
- * here : labels as they were before `mine`. there : labels after the log that they shall follow on.
+ * here : labels as they were before `mine`. there : labels after the log that they shall follow on. known : the label to
+ * give for one that was given then, whose part may have gone.
  */
 export async function onTop(
   here: LabelEditor,
   mine: readonly StrokeJson[],
   there: LabelEditor,
   place: StrokePlace,
+  known: (label: number) => number = (label) => label,
 ): Promise<StrokeJson[]> {
   const strokes: StrokeJson[] = [];
-  for (const change of await netChanges(here, mine)) {
-    const edit = await editOf(change, there.labels);
+  for (const { faces, after } of await netChanges(here, mine)) {
+    const edit = await editOf(
+      faces,
+      after.map((label) => known(label)),
+      there.labels,
+    );
     if (there.apply(edit).faces.length === 0) continue;
     strokes.push(newStroke(edit, { ...place, sequence: place.sequence + strokes.length }));
   }
@@ -45,7 +51,7 @@ async function netChanges(here: LabelEditor, mine: readonly StrokeJson[]): Promi
   return done;
 }
 
-async function editOf({ faces, after }: Change, labels: Uint16Array): Promise<Edit> {
+async function editOf(faces: Uint32Array, after: Uint16Array, labels: Uint16Array): Promise<Edit> {
   const [label] = after;
   if (label !== undefined && after.every((each) => each === label)) {
     return { kind: "assign", runs: runsOf(faces), label };

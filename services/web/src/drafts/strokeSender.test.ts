@@ -168,7 +168,7 @@ describe("failures", () => {
     expect(sender.strokes).toEqual([]);
     expect((await outbox.asides())[0]).toMatchObject({
       reason: "refused",
-      first: 0,
+      before: [],
       strokes: [{ id: "stroke 0" }],
     });
   });
@@ -182,6 +182,7 @@ describe("failures", () => {
     await sender.withdraw();
     expect((await outbox.asides())[0]).toMatchObject({ reason: "closed", strokes: [{ id: "stroke 0" }] });
     expect(await kept()).toEqual([]);
+    expect(sender.state.get()).toMatchObject({ kind: "closed", nQueued: 0 }); // it would take no other stroke
   });
 
   it("does not take another workspace's draft of the same number for its own", async () => {
@@ -244,7 +245,7 @@ describe("a draft that went on elsewhere", () => {
     expect(ids(sender.strokes)).toEqual(["stroke 0", "theirs 1", "theirs 2"]);
     expect(sender.state.get().kind).toBe("saved");
     expect(await outbox.asides()).toMatchObject([
-      { first: 1, reason: "took-theirs", strokes: [{ id: "mine 1" }] },
+      { before: [{ id: "stroke 0" }], reason: "took-theirs", strokes: [{ id: "mine 1" }] },
     ]);
     expect(await kept()).toEqual([]);
   });

@@ -81,7 +81,7 @@ export class StrokeSender {
     const own = this.pending.filter(({ id }) => keepsHeard || this.unkept.has(id) || this.storing.has(id));
     const unsent = [...kept, ...own.filter((stroke) => !known.has(stroke.id))];
     const { log, strays } = chained(recorded, unsent);
-    await this.setAside(recorded.length, strays, "two-windows");
+    await this.setAside(log.slice(0, strays[0]?.sequence), strays, "two-windows");
     this.log = log;
     this.divergence = null;
     await this.settleWith(recorded);
@@ -104,15 +104,16 @@ export class StrokeSender {
       );
     }
     this.log.push(stroke);
-    const stored = this.parts.outbox.add(this.draft, stroke).catch(() => {
-      this.unkept.add(stroke.id); // no room, or no database at all: it still goes out from memory
-    });
-    this.storing.set(stroke.id, stored);
-    void stored.then(() => {
-      this.storing.delete(stroke.id);
-      this.publish();
-    });
+    this.keep(stroke);
     this.publish();
+    this.resume();
+  }
+
+  /** Something may work again: keeps what could not be kept, and sends what waits. */
+  wake(): void {
+    for (const stroke of this.pending) {
+      if (this.unkept.has(stroke.id) && !this.storing.has(stroke.id)) this.keep(stroke);
+    }
     this.resume();
   }
 
@@ -153,30 +154,50 @@ export class StrokeSender {
   /** Goes on from the strokes on record; those made here are set aside. */
   async takeTheirs(): Promise<void> {
     const { common, mine, theirs } = this.openDivergence();
-    await this.setAside(common, mine, "took-theirs");
-    this.settle([...this.log.slice(0, common), ...theirs], common + theirs.length);
+    const before = this.log.slice(0, common);
+    await this.setAside(before, mine, "took-theirs");
+    this.settle([...before, ...theirs], common + theirs.length);
   }
 
   /** Goes on from the strokes on record with `mine` on top, which stand for those made here. */
   async keepMine(mine: readonly StrokeJson[]): Promise<void> {
     const divergence = this.openDivergence();
     const base = [...this.log.slice(0, divergence.common), ...divergence.theirs];
-    await this.parts.outbox.replace(this.draft, divergence.mine, mine);
+    await this.parts.outbox.replace(this.draft, divergence.mine, mine).catch(() => {
+      for (const { id } of mine) this.unkept.add(id);
+    });
     this.settle([...base, ...mine], base.length);
   }
 
   /** Gives up what the service does not take: it is set aside, and the log is what is on record. */
   async withdraw(): Promise<void> {
-    const reason = this.blocked?.kind === "closed" ? "closed" : "refused";
-    await this.setAside(this.nRecorded, this.pending, reason);
-    this.blocked = null;
-    this.settle(this.log.slice(0, this.nRecorded), this.nRecorded);
+    const isClosed = this.blocked?.kind === "closed";
+    const recorded = this.log.slice(0, this.nRecorded);
+    await this.setAside(recorded, this.pending, isClosed ? "closed" : "refused");
+    if (!isClosed) this.blocked = null; // no further stroke would be taken either
+    this.settle(recorded, recorded.length);
   }
 
-  private async setAside(first: number, strokes: readonly StrokeJson[], reason: AsideReason): Promise<void> {
+  private keep(stroke: StrokeJson): void {
+    const stored = this.parts.outbox.add(this.draft, stroke).then(
+      () => void this.unkept.delete(stroke.id),
+      () => void this.unkept.add(stroke.id), // no room, or no database at all: it still goes out from memory
+    );
+    this.storing.set(stroke.id, stored);
+    void stored.then(() => {
+      this.storing.delete(stroke.id);
+      this.publish();
+    });
+  }
+
+  private async setAside(
+    before: readonly StrokeJson[],
+    strokes: readonly StrokeJson[],
+    reason: AsideReason,
+  ): Promise<void> {
     if (strokes.length === 0) return;
     const { clock, outbox } = this.parts;
-    await outbox.setAside({ draft: this.draft, first, at: clock.now(), reason, strokes });
+    await outbox.setAside({ draft: this.draft, before, at: clock.now(), reason, strokes });
   }
 
   private settle(log: StrokeJson[], nRecorded: number): void {
@@ -322,7 +343,7 @@ export class StrokeSender {
 
   private described(): SaveState {
     const nQueued = this.log.length - this.nRecorded;
-    const queued = { nQueued, isKept: this.unkept.size === 0 };
+    const queued = { nQueued, isKept: !this.pending.some(({ id }) => this.unkept.has(id)) };
     if (this.divergence !== null) return { ...queued, kind: "conflict", divergence: this.divergence };
     if (this.blocked !== null) return { ...queued, ...this.blocked };
     if (nQueued === 0) return { kind: "saved" };

@@ -4,6 +4,7 @@ import type { ConfirmOutcome } from "../../../drafts/confirming";
 import type { Lease, LeaseApi } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
+import type { DraftIdentity } from "../../../drafts/outbox";
 import { conflict, settled } from "../../../drafts/testing";
 import { Desk } from "./desk";
 import type { HeldShape, HeldState } from "./heldShape";
@@ -84,7 +85,7 @@ function held({ lease }: Renewed<Lease>): HeldShape {
       stop: () => stopped.push(lease.shape_id),
       state: { get: () => ({ kind: taken.includes(lease.shape_id) ? "ended" : "held" }) },
     },
-    open: { draft: { confirm }, editor: { sha256: () => "sum" } },
+    open: { confirm, draft: { sender: { draft: { key: "now" } } } },
     load: () => loaded.push(lease.shape_id),
     begin: async () => {},
     seen: async () => {},
@@ -196,6 +197,19 @@ describe("a desk", () => {
     const desk = await started();
     await desk.recheck(77);
     expect(closed).toEqual([]);
+  });
+
+  it("is at work on drafts of its shapes, before it knows them and while they are opened, too", async () => {
+    const of = (shapeId: number, key: string) => ({ shapeId, key }) as DraftIdentity;
+    const desk = new Desk({ leases: queue.api, hold: held }, 9, () => ({ partIds: [1], start: "best" }));
+    const starting = desk.start([]);
+    expect(desk.isAtWork(of(77, "any"))).toBe(true);
+    await starting;
+    await settled();
+    expect(desk.isAtWork(of(77, "any"))).toBe(false);
+    expect([desk.isAtWork(of(1, "now")), desk.isAtWork(of(1, "before"))]).toEqual([true, false]);
+    Object.assign(desk.state.get().current as HeldShape, { open: null });
+    expect(desk.isAtWork(of(1, "before"))).toBe(true);
   });
 
   it("claims nothing when it is closed at once", async () => {

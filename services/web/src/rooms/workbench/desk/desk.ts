@@ -4,6 +4,7 @@ import type { ConfirmOutcome } from "../../../drafts/confirming";
 import type { Lease, LeaseApi, RefusedClaim } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
 import { Observable } from "../../../drafts/observable";
+import type { DraftIdentity } from "../../../drafts/outbox";
 import type { HeldShape, Opening } from "./heldShape";
 
 /** As many as the service lets one person hold. */
@@ -78,9 +79,8 @@ export class Desk {
 
   /** Confirms the labels in hand; what comes next is shown at once if that is done. */
   async confirm(shape: HeldShape): Promise<ConfirmOutcome> {
-    const { open } = shape;
-    if (open === null) return { kind: "unsaved" };
-    const outcome = await open.draft.confirm(open.editor.sha256());
+    if (shape.open === null) return { kind: "unsaved" };
+    const outcome = await shape.open.confirm();
     if (outcome.kind === "confirmed") await this.leave(shape);
     return outcome;
   }
@@ -110,6 +110,13 @@ export class Desk {
       else await this.takeNext();
     }
     await shape.close();
+  }
+
+  /** Whether a draft is open here, or may be once its shape is. */
+  isAtWork(draft: DraftIdentity): boolean {
+    if (this.state.get().phase === "opening") return true;
+    const shape = this.all().find((each) => each.shapeId === draft.shapeId);
+    return shape !== undefined && (shape.open === null || shape.open.draft.sender.draft.key === draft.key);
   }
 
   dismissRefusals(): void {

@@ -63,6 +63,8 @@ export class HeldShape {
   readonly facts = new Observable<ShapeFacts | null>(null);
   /** What a reviewer wrote when they sent the labels back; null if they did not. */
   readonly reworkNote = new Observable<string | null>(null);
+  /** Why the shape begins without the labels that it should start from; null if it does not. */
+  readonly startTrouble = new Observable<string | null>(null);
   readonly keeper: LeaseKeeper<Lease>;
   private loading: Loading | null = null;
   private drafting: Promise<Drafted> | null = null;
@@ -102,9 +104,11 @@ export class HeldShape {
       start: this.startLabels(opening.start),
     };
     this.loading = loading;
+    const isFresh = this.lease.is_prefetched; // nobody has drawn on it yet, most likely
     Promise.all(Object.values(loading)).catch(() => {
       this.loading = null; // `begin` says so; trying again fetches again
     });
+    if (isFresh) void this.showStart(loading).catch(() => {}); // `begin` says why
     return loading;
   }
 
@@ -131,9 +135,8 @@ export class HeldShape {
       ]);
       const open = await OpenShape.open(model, draft, base, opening.partIds);
       if (this.isClosed) return await open.close();
-      if (draft.strokes.length === 0 && base === null && start !== null) {
-        await open.replaceLabels("start_from", { from: start.from }, start.labels);
-      }
+      if (draft.strokes.length === 0 && base === null && start !== null) await this.startFrom(open, start);
+      if (this.isClosed) return await open.close();
       this.state.set({ step: "ready", model, open });
     } catch (error) {
       this.hasBegun = false;
@@ -208,11 +211,32 @@ export class HeldShape {
     return facts;
   }
 
+  /** While the draft is on its way: what it will most likely start from. */
+  private async showStart({ model, start, facts }: Loading): Promise<void> {
+    const [shown, labels] = await Promise.all([model, start, facts]);
+    const isShown = this.state.get().step === "labels";
+    if (isShown && labels?.labels.length === shown.mesh.nFaces && !this.goesOn)
+      shown.setLabels(labels.labels);
+  }
+
+  /** Labels that do not fit keep nobody from the shape. */
+  private async startFrom(open: OpenShape, { from, labels }: StartLabels): Promise<void> {
+    try {
+      await open.startFrom(from, labels);
+    } catch (error) {
+      this.startTrouble.set(error instanceof Error ? error.message : String(error));
+    }
+  }
+
+  /** Whether work goes on from labels that are on record. */
+  private get goesOn(): boolean {
+    return this.isNamed || this.reworkNote.get() !== null;
+  }
+
   private async drafted(facts: ShapeFacts): Promise<Drafted> {
-    const goesOn = this.isNamed || this.reworkNote.get() !== null;
     let draft: Draft | null = null;
     try {
-      draft = await DraftSession.open(this.parts, this.keeper, goesOn ? facts.headRevision : null);
+      draft = await DraftSession.open(this.parts, this.keeper, this.goesOn ? facts.headRevision : null);
       const { id, base_revision } = draft.draft;
       return { draft, base: base_revision === null ? null : await fetchDraftBase(id) };
     } catch (error) {

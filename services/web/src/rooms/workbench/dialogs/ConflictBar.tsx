@@ -4,11 +4,13 @@ import { count } from "../../../components/numbers";
 import type { Divergence } from "../../../drafts/reconcile";
 import type { OpenShape } from "../shape/openShape";
 import { CompareBar } from "./CompareBar";
+import { useTask } from "./useTask";
 
 /** The draft went on elsewhere and here: the person chooses what to go on with, and neither side is lost. */
 export function ConflictBar({ open, divergence }: { open: OpenShape; divergence: Divergence }) {
   const [theirs, setTheirs] = useState<Uint16Array | null>(null);
   const { mine, theirs: recorded } = divergence;
+  const settling = useTask();
   // biome-ignore lint/correctness/useExhaustiveDependencies: another divergence has other sides
   useEffect(() => {
     void open.sidesOfConflict().then((sides) => setTheirs(sides?.theirs ?? null));
@@ -21,10 +23,16 @@ export function ConflictBar({ open, divergence }: { open: OpenShape; divergence:
       theirName="the saved one"
       actions={
         <>
-          <Button variant="primary" onClick={() => void open.keepMine()}>
+          <Button
+            variant="primary"
+            isBusy={settling.isBusy}
+            onClick={() => settling.run(() => open.keepMine())}
+          >
             Put mine on top
           </Button>
-          <Button onClick={() => void open.draft.sender.takeTheirs()}>Take the saved one</Button>
+          <Button isBusy={settling.isBusy} onClick={() => settling.run(() => open.draft.sender.takeTheirs())}>
+            Take the saved one
+          </Button>
         </>
       }
     >

@@ -1,12 +1,14 @@
 import type { ReactNode } from "react";
-import { Button, Notice, useToast } from "../../../components";
+import { Button, Notice } from "../../../components";
 import { count } from "../../../components/numbers";
 import type { LeaseEnd } from "../../../drafts/leaseKeeper";
 import { useObservable } from "../../../drafts/useObservable";
 import type { HeldShape } from "../desk/heldShape";
 import type { OpenShape } from "../shape/openShape";
+import { AsidesElsewhere } from "./AsidesElsewhere";
 import { ConflictBar } from "./ConflictBar";
 import { SetAsideBar } from "./SetAsideBar";
+import { useTask } from "./useTask";
 
 export interface ShapeBannersProps {
   held: HeldShape;
@@ -22,6 +24,7 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
   const role = useObservable(open.draft.right.role);
   const isConfirmedElsewhere = useObservable(open.draft.isConfirmedElsewhere);
   const save = useObservable(open.draft.sender.state);
+  const startTrouble = useObservable(held.startTrouble);
   const leave = <Button onClick={onLeave}>Go to the next shape</Button>;
   if (isConfirmedElsewhere) {
     return (
@@ -38,14 +41,25 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
         </Notice>
       )}
       {lease.kind === "ended" && !isLossTold && <Ended held={held} how={lease.how} leave={leave} />}
+      {startTrouble !== null && (
+        <Notice kind="warning" title="The shape begins without labels">
+          Those to start from do not fit it: {startTrouble}.
+        </Notice>
+      )}
       {role === "watching" && <Watching open={open} />}
       {role === "editing" && save.kind === "conflict" && (
         <ConflictBar open={open} divergence={save.divergence} />
       )}
-      {role === "editing" && (save.kind === "closed" || save.kind === "refused") && (
+      {role === "editing" && (save.kind === "closed" || save.kind === "refused") && save.nQueued > 0 && (
         <Withdrawn open={open} title={titleOfRefusal(save.kind, save.nQueued)} why={save.why} leave={leave} />
       )}
+      {save.kind === "closed" && save.nQueued === 0 && (
+        <Notice title="This draft was closed elsewhere" actions={leave}>
+          What came after is set aside. It can be put on top once you have the shape in hand again.
+        </Notice>
+      )}
       <SetAsideBar open={open} />
+      <AsidesElsewhere outbox={open.draft.sender.outbox} draft={open.draft.sender.draft} />
     </>
   );
 }
@@ -58,16 +72,18 @@ const ENDED: Readonly<Record<LeaseEnd, string>> = {
 
 /** The shape was freed: the person may go on elsewhere, or ask for it again. */
 function Ended({ held, how, leave }: { held: HeldShape; how: LeaseEnd; leave: ReactNode }) {
-  const showToast = useToast();
-  const claimBack = () =>
-    held.keeper.claimBack().catch((error: Error) => showToast({ message: error.message, tone: "bad" }));
+  const asking = useTask();
   return (
     <Notice
       title={ENDED[how]}
       actions={
         <>
           {leave}
-          <Button variant="quiet" onClick={() => void claimBack()}>
+          <Button
+            variant="quiet"
+            isBusy={asking.isBusy}
+            onClick={() => asking.run(() => held.keeper.claimBack())}
+          >
             Ask for it again
           </Button>
         </>
@@ -94,13 +110,19 @@ function Watching({ open }: { open: OpenShape }) {
 }
 
 function Withdrawn(props: { open: OpenShape; title: string; why: string; leave: ReactNode }) {
+  const withdrawing = useTask();
   return (
     <Notice
       kind="error"
       title={props.title}
       actions={
         <>
-          <Button onClick={() => void props.open.draft.sender.withdraw()}>Set them aside</Button>
+          <Button
+            isBusy={withdrawing.isBusy}
+            onClick={() => withdrawing.run(() => props.open.draft.sender.withdraw())}
+          >
+            Set them aside
+          </Button>
           {props.leave}
         </>
       }

@@ -22,7 +22,7 @@ export function wordsOf(state: SaveState): string {
     case "conflict":
       return "Two versions";
     case "closed":
-      return `${strokes(state.nQueued)} not taken`;
+      return state.nQueued === 0 ? "Closed elsewhere" : `${strokes(state.nQueued)} not taken`;
     case "refused":
       return `${strokes(state.nQueued)} refused`;
   }

@@ -68,7 +68,7 @@ export function ShapePanel(props: ShapePanelProps) {
         <Button
           variant="primary"
           className={styles.confirm ?? ""}
-          disabled={!canEdit || !isSeen}
+          disabled={!(canEdit || isConfirming) || !isSeen}
           isBusy={isConfirming}
           aria-keyshortcuts="Enter"
           title="Confirm these labels and go on to the next shape (Enter)"

@@ -4,9 +4,12 @@ import { DraftSession } from "../../../drafts/draftSession";
 import { IndexedDbOutbox } from "../../../drafts/indexedDbOutbox";
 import type { Lease } from "../../../drafts/leaseApi";
 import { LeaseKeeper } from "../../../drafts/leaseKeeper";
-import { FakeService, fakeBrowser, HandClock, settled, stroke } from "../../../drafts/testing";
+import { draftIdentity, type KeptAside, type SetAside } from "../../../drafts/outbox";
+import { FakeService, fakeBrowser, HandClock, problem, settled, stroke } from "../../../drafts/testing";
 import { SurfaceMesh } from "../../../geometry/surfaceMesh";
+import { makeDelta } from "../../../labels/deltaCodec";
 import type { Operation } from "../../../labels/operations";
+import { newStroke, type StrokeJson } from "../../../labels/strokes";
 import type { ShapeModel } from "../../../viewer/shapeModel";
 import { OpenShape } from "./openShape";
 
@@ -174,8 +177,113 @@ describe("a conflict", () => {
     await shape.draft.sender.takeTheirs();
     await settled();
     const [aside] = await shape.draft.sender.outbox.asides();
-    await shape.putOnTop(aside?.first ?? 0, aside?.strokes ?? []);
+    await shape.putOnTop(aside as KeptAside, null);
     await settled();
     expect([...shape.labels]).toEqual([1, 0, 3, 3, 0, 0]);
+  });
+});
+
+describe("strokes that were set aside", () => {
+  const at = "2026-01-01T00:00:00Z";
+  const base = Uint16Array.of(0, 0, 0, 0, 2, 2);
+
+  function aside(before: readonly StrokeJson[], ...strokes: readonly StrokeJson[]): SetAside {
+    return { draft: draftIdentity(service.record), before, at: 0, reason: "closed", strokes };
+  }
+
+  const segmented = (sequence: number, seed: number, label: number): StrokeJson => {
+    const place = { sequence, base_revision: 5, author_id: 2 };
+    return { v: 1, kind: "segment_wide", seed, label, id: `segmented ${sequence}`, at, ...place };
+  };
+
+  it("give a later draft the faces that they changed in their own", async () => {
+    const shape = await opened();
+    shape.perform(assign(0, 4, 1));
+    await shape.putOnTop(aside([segmented(0, 0, 3)], segmented(1, 4, 1), segmented(2, 0, 2)), base);
+    await settled();
+    expect([...shape.labels]).toEqual([2, 2, 2, 2, 1, 1]);
+    expect(service.log).toHaveLength(3);
+  });
+
+  it("leave faces without a label whose part has gone", async () => {
+    const shape = await opened([1]);
+    shape.perform(assign(0, 4, 1));
+    await shape.putOnTop(aside([], stroke(0, "gone", 9), stroke(1, "here", 1)), null);
+    expect([...shape.labels]).toEqual([0, 1, 1, 1, 0, 0]);
+  });
+
+  it("are not put on labels that changed meanwhile, nor where nothing may be changed", async () => {
+    const shape = await opened();
+    const putting = shape.putOnTop(aside([], stroke(0)), null);
+    shape.perform(assign(2, 2, 3));
+    await expect(putting).rejects.toThrow("changed meanwhile");
+    shape.isConfirming.set(true);
+    await expect(shape.putOnTop(aside([], stroke(0)), null)).rejects.toThrow("nothing was put on top");
+    expect([...shape.labels]).toEqual([0, 0, 3, 3, 0, 0]);
+  });
+});
+
+describe("labels of a part that the collection no longer has", () => {
+  it("are given to no face, and stay where they were", async () => {
+    const shape = await opened(null);
+    shape.perform(assign(0, 2, 9));
+    shape.setParts([1, 2]);
+    expect(await shape.replaceLabels("model_refinement", {}, refined(9, 1, 9, 2, 0, 0))).toBe(true);
+    expect([...shape.labels]).toEqual([9, 1, 0, 2, 0, 0]);
+  });
+});
+
+describe("confirming", () => {
+  it("takes no stroke until it is known that it was refused", async () => {
+    const shape = await opened();
+    const confirming = shape.confirm();
+    expect(shape.perform(assign(0, 2, 1))).toBeNull();
+    expect((await confirming).kind).toBe("confirmed");
+    expect(shape.canEdit).toBe(false);
+
+    const other = await opened();
+    service.confirm = () => Promise.reject(problem(422, "invalid", "no"));
+    expect((await other.confirm()).kind).toBe("refused");
+    expect(other.canEdit).toBe(true);
+  });
+
+  it("elsewhere ends drawing here", async () => {
+    const shape = await opened();
+    shape.draft.isConfirmedElsewhere.set(true);
+    expect(shape.canEdit).toBe(false);
+  });
+});
+
+describe("strokes of another tab", () => {
+  it("are done in their order, though one takes longer to be read than the next", async () => {
+    const shape = await opened();
+    const delta = await makeDelta("patches", {}, refined(0, 0, 0, 0, 0, 0), refined(1, 1, 1, 0, 0, 0));
+    const place = { base_revision: null, author_id: 2 };
+    const strokes = [
+      newStroke(delta, { ...place, sequence: 0 }),
+      newStroke({ kind: "undo" }, { ...place, sequence: 1 }),
+      newStroke(assign(5, 1, 2), { ...place, sequence: 2 }),
+    ];
+    for (const each of strokes) {
+      shape.draft.sender.follow(each);
+      shape.draft.listener?.onFollowed(each);
+    }
+    expect(shape.canEdit).toBe(false);
+    await new Promise<void>((resolve) => shape.isBehind.subscribe(resolve));
+    expect([...shape.labels]).toEqual([0, 0, 0, 0, 0, 2]);
+    expect(shape.canEdit).toBe(true);
+  });
+
+  it("are done once, though they come while the labels are made anew", async () => {
+    const shape = await opened();
+    service.log = [stroke(0, "theirs")];
+    await shape.draft.sender.refresh();
+    const next = stroke(1, "next");
+    shape.draft.sender.follow(next);
+    shape.draft.listener?.onFollowed(next);
+    await settled();
+    expect([...shape.labels]).toEqual([1, 1, 0, 0, 0, 0]);
+    shape.undo();
+    expect([...shape.labels]).toEqual([1, 0, 0, 0, 0, 0]);
   });
 });

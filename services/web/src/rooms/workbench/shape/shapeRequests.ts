@@ -1,4 +1,5 @@
 /** What the workbench asks the service about one shape: facts, labels to start from, and tools. */
+import { queryOptions } from "@tanstack/react-query";
 import { api, body, fetchArrays, type Schemas } from "../../../api/client";
 import { arrayOf } from "../../../api/safetensors";
 import type { PatchMethod } from "../tools/toolSettings";
@@ -16,10 +17,15 @@ export interface ShapeFacts {
   readonly headAt: string | null;
 }
 
+function fetchShape(shapeId: number) {
+  return body(api.GET("/api/v1/shapes/{shape_id}", { params: { path: { shape_id: shapeId } } }));
+}
+
+export const shapeQuery = (shapeId: number) =>
+  queryOptions({ queryKey: ["shape", shapeId, "workbench"], queryFn: () => fetchShape(shapeId) });
+
 export async function fetchFacts(shapeId: number): Promise<ShapeFacts> {
-  const { state, mesh, head } = await body(
-    api.GET("/api/v1/shapes/{shape_id}", { params: { path: { shape_id: shapeId } } }),
-  );
+  const { state, mesh, head } = await fetchShape(shapeId);
   const fitting = head !== null && head.mesh_hash === mesh?.mesh_hash ? head : null;
   return {
     state,
@@ -45,6 +51,11 @@ export async function fetchLabels(shapeId: number, segmentation: Segmentation): 
 
 export async function fetchRevision(shapeId: number, revisionId: number): Promise<Uint16Array> {
   return labelsIn(await fetchArrays(`/shapes/${shapeId}/labels?revision=${revisionId}`));
+}
+
+/** The labels that strokes of a revision follow on; null for none, which is all unlabelled. */
+export async function fetchBase(shapeId: number, baseRevision: number | null): Promise<Uint16Array | null> {
+  return baseRevision === null ? null : fetchRevision(shapeId, baseRevision);
 }
 
 /** How unsure the newest model is of each face, 0 to 1. */
