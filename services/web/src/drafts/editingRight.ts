@@ -31,6 +31,11 @@ export interface Tabs {
 
 const PATIENCE_MS = 1_500;
 
+/** The lock that goes with the right to edit a draft. */
+export function lockOf(draftKey: string): string {
+  return `partwise draft ${draftKey}`;
+}
+
 export class EditingRight {
   readonly role = new Observable<TabRole>("asking");
   onMessage: (message: TabMessage) => void = () => {};
@@ -48,7 +53,7 @@ export class EditingRight {
     private readonly clock: Clock,
     draftKey: string,
   ) {
-    this.name = `partwise draft ${draftKey}`;
+    this.name = lockOf(draftKey);
     this.channel = tabs.channel(this.name);
     this.channel.onmessage = ({ data }) => void this.receive(data);
   }

@@ -1,36 +1,66 @@
-/** Strokes that an earlier visit could not send, of drafts that are not open now. */
+/** Strokes that could not be sent while their draft was open, which it is not now. */
+import { lockOf, type Tabs } from "./editingRight";
 import { type DraftIdentity, draftIdentity } from "./outbox";
 import { type SenderParts, StrokeSender } from "./strokeSender";
 
-/**
- * Sends what the outbox keeps of this person's drafts, but for the open ones. What no longer fits is set aside. What
- * cannot be sent for now stays.
- *
- * openKeys : drafts that are open, whose own senders do it.
- */
-export async function sendLeftovers(
-  parts: SenderParts,
-  personId: number,
-  openKeys: ReadonlySet<string>,
-): Promise<void> {
-  for (const draft of await parts.outbox.drafts().catch(() => [])) {
-    if (draft.personId === personId && !openKeys.has(draft.key)) await sendLeftoversOf(parts, draft);
+const ANSWER_MS = 30_000;
+
+export interface LeftoverParts extends SenderParts {
+  readonly tabs: Pick<Tabs, "locks">;
+}
+
+export class Leftovers {
+  private isSending = false;
+
+  /** isAtWork : whether a draft is open here, or about to be: its own sender does it then. */
+  constructor(
+    private readonly parts: LeftoverParts,
+    private readonly personId: number,
+    private readonly isAtWork: (draft: DraftIdentity) => boolean,
+  ) {}
+
+  /**
+   * Sends what the outbox keeps of this person's drafts, but for those that this tab or another has open. What can no
+   * longer be taken is set aside. What cannot be sent for now stays; so does what the person has to choose about.
+   */
+  async send(): Promise<void> {
+    if (this.isSending) return;
+    this.isSending = true;
+    try {
+      for (const draft of await this.parts.outbox.drafts().catch(() => [])) {
+        if (draft.personId === this.personId && !this.isAtWork(draft)) await this.sendAlone(draft);
+      }
+    } finally {
+      this.isSending = false;
+    }
+  }
+
+  private async sendAlone(draft: DraftIdentity): Promise<void> {
+    const { locks } = this.parts.tabs;
+    const send = () => sendLeftoversOf(this.parts, draft);
+    if (locks === null) await send();
+    else await locks.request(lockOf(draft.key), { ifAvailable: true }, (lock) => lock && send());
   }
 }
 
 async function sendLeftoversOf(parts: SenderParts, draft: DraftIdentity): Promise<void> {
-  const { signal } = new AbortController();
+  const request = new AbortController();
+  const giveUp = parts.clock.after(ANSWER_MS, () => request.abort());
   try {
-    const found = await parts.transport.draft(draft.draftId, signal);
+    const found = await parts.transport.draft(draft.draftId, request.signal);
     if (draftIdentity(found).key !== draft.key) return; // another workspace's, served here before: it may be again
-    const sender = new StrokeSender(parts, draft);
-    await sender.adopt(() => parts.transport.strokes(draft.draftId, -1, signal));
+    const sender = new StrokeSender(parts, draftIdentity(found));
+    await sender.adopt(() => parts.transport.strokes(draft.draftId, -1, request.signal));
+    giveUp();
     await sender.flush();
     const { kind } = sender.state.get();
-    if (kind === "conflict") await sender.takeTheirs();
+    // of two versions the person chooses once they open the draft, which can no longer be where it is closed
+    if (kind === "conflict" && found.outcome !== null) await sender.takeTheirs();
     else if (kind === "closed" || kind === "refused") await sender.withdraw();
     await sender.pause();
   } catch {
-    // the draft cannot be read now: its strokes stay where they are, for the next visit
+    // the draft cannot be read now: its strokes stay where they are, for the next time
+  } finally {
+    giveUp();
   }
 }

@@ -2,7 +2,7 @@
 import { useContext, useEffect, useRef, useState } from "react";
 import type { ServiceEvent } from "../../../api/events";
 import { onSessionBegin } from "../../../api/sessionEnd";
-import { useServiceEvents } from "../../../app/events/useServiceEvents";
+import { useConnection, useServiceEvents } from "../../../app/events/useServiceEvents";
 import { systemClock } from "../../../drafts/clock";
 import type { SessionParts } from "../../../drafts/draftSession";
 import { browserTabs } from "../../../drafts/editingRight";
@@ -10,25 +10,28 @@ import { httpTransport } from "../../../drafts/httpTransport";
 import { IndexedDbOutbox } from "../../../drafts/indexedDbOutbox";
 import { type Lease, leaseApi } from "../../../drafts/leaseApi";
 import type { Renewed } from "../../../drafts/leaseKeeper";
-import { sendLeftovers } from "../../../drafts/leftovers";
+import { Leftovers } from "../../../drafts/leftovers";
+import { ReserveOutbox } from "../../../drafts/reserveOutbox";
 import { Desk } from "./desk";
 import { HeadStartContext } from "./HeadStartContext";
 import { HeldShape, type Opening } from "./heldShape";
 
 export interface OpenedDesk {
   readonly desk: Desk;
-  readonly parts: SessionParts;
+  /** Something may work again: the network, this tab, this computer, the log in. */
+  wake(): void;
 }
 
-function newParts(): SessionParts {
-  return {
-    transport: httpTransport,
-    outbox: new IndexedDbOutbox(),
-    clock: systemClock,
-    tabs: browserTabs,
-    openDraft: leaseApi.openDraft,
-  };
-}
+/** One for the page's life: what the device does not keep is still there when its person comes back to the room. */
+const outbox = new ReserveOutbox(new IndexedDbOutbox(), systemClock);
+
+const PARTS: SessionParts = {
+  transport: httpTransport,
+  outbox,
+  clock: systemClock,
+  tabs: browserTabs,
+  openDraft: leaseApi.openDraft,
+};
 
 /** named : shapes that the address asks for. Null until the room is entered for good. */
 export function useDesk(
@@ -43,26 +46,38 @@ export function useDesk(
   const ahead = useContext(HeadStartContext);
   const [opened, setOpened] = useState<OpenedDesk | null>(null);
   useEffect(() => {
-    const parts = newParts();
     const hold = (leased: Renewed<Lease>, isNamed: boolean) =>
-      new HeldShape(parts, leased, isNamed, ahead?.mesh);
+      new HeldShape(PARTS, leased, isNamed, ahead?.mesh);
     const desk = new Desk({ leases: ahead?.leases ?? leaseApi, hold }, collectionId, () => latest.current);
+    const leftovers = new Leftovers(PARTS, personId, (draft) => desk.isAtWork(draft));
+    const wake = () => {
+      desk.wake();
+      void leftovers.send();
+    };
     const ids = wanted === "" ? [] : wanted.split(",").map(Number);
-    void desk.start(ids).then(() => sendLeftovers(parts, personId, openKeys(desk)));
-    setOpened({ desk, parts });
-    const stopWaking = wakeWith(desk);
+    void desk
+      .start(ids)
+      .then(() => desk.state.get().current?.seen())
+      .then(() => leftovers.send());
+    setOpened({ desk, wake });
+    const stopWaking = wakeWith(wake);
+    window.addEventListener("beforeunload", warnOfLoss); // once, and for the page's life as the outbox is
     return () => {
       stopWaking();
       void desk.close();
     };
   }, [collectionId, personId, wanted, ahead]);
+  const connection = useConnection();
+  useEffect(() => {
+    if (connection === "connected") opened?.wake();
+  }, [connection, opened]);
   useServiceEvents(
     collectionId,
     (event) => {
       const shapeId = endedFor(personId, event);
       if (shapeId !== null) void opened?.desk.recheck(shapeId);
     },
-    () => opened?.desk.wake(),
+    () => opened?.wake(),
   );
   return opened;
 }
@@ -74,15 +89,13 @@ export function endedFor(personId: number, { kind, payload }: ServiceEvent): num
   return isTheirs && isEnd && typeof payload.shape_id === "number" ? payload.shape_id : null;
 }
 
-function openKeys(desk: Desk): Set<string> {
-  const { shapes } = desk.state.get();
-  return new Set(shapes.flatMap((shape) => shape.open?.draft.sender.draft.key ?? []));
+/** The browser asks before it closes a page that alone has strokes. */
+function warnOfLoss(event: BeforeUnloadEvent): void {
+  if (!outbox.isEmpty) event.preventDefault();
 }
 
-/** When something may work again: the network, this tab, this computer, the log in. */
-function wakeWith(desk: Desk): () => void {
-  const wake = () => desk.wake();
-  const wakeIfSeen = () => document.visibilityState === "visible" && desk.wake();
+function wakeWith(wake: () => void): () => void {
+  const wakeIfSeen = () => document.visibilityState === "visible" && wake();
   window.addEventListener("online", wake);
   document.addEventListener("visibilitychange", wakeIfSeen);
   const stop = onSessionBegin(wake);
