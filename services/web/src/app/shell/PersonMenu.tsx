@@ -16,7 +16,7 @@ const SCHEME_WORDS: Readonly<Record<Scheme, { name: string; icon: typeof Sun }>>
 };
 
 /** Who one is, how the page looks, and the way out. */
-export function PersonMenu() {
+export function PersonMenu({ room }: { room: string | null }) {
   const me = useMe();
   const [scheme, setScheme] = useScheme();
   const [isSheetOpen, setSheetOpen] = useState(false);
@@ -67,7 +67,7 @@ export function PersonMenu() {
           Log out
         </MenuItem>
       </Menu>
-      {isSheetOpen && <ShortcutSheet onClose={() => setSheetOpen(false)} />}
+      {isSheetOpen && <ShortcutSheet room={room} onClose={() => setSheetOpen(false)} />}
     </>
   );
 }

@@ -17,7 +17,7 @@ export interface ShellProps {
 
 /** The bar, and a room that has all the rest of the window: rooms scroll by themselves, or let the page do it. */
 export function Shell({ collection, room, children }: ShellProps) {
-  useRoomKeys(collection?.id ?? null);
+  useRoomKeys(collection?.id ?? null, room);
   const [isSheetOpen, setSheetOpen] = useState(false);
   useSheetKey(room === null || !HAVE_SHEETS.has(room), () => setSheetOpen(true));
   return (
@@ -29,7 +29,7 @@ export function Shell({ collection, room, children }: ShellProps) {
       <main id="room" tabIndex={-1} className={styles.room}>
         {children}
       </main>
-      {isSheetOpen && <ShortcutSheet onClose={() => setSheetOpen(false)} />}
+      {isSheetOpen && <ShortcutSheet room={room} onClose={() => setSheetOpen(false)} />}
     </div>
   );
 }

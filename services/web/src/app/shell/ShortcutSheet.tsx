@@ -1,29 +1,39 @@
 import { Dialog } from "../../components";
-import styles from "./ShortcutSheet.module.css";
+import { useMe } from "../session/MeContext";
+import { KeyGroup, type KeyRow } from "./KeyGroup";
+import { roomKeyRows } from "./roomKeyRows";
 
-const ANYWHERE: readonly (readonly [string, string])[] = [
-  ["G then T", "Go to the table"],
-  ["G then W", "Go to the workbench"],
-  ["G then O", "Go to operations"],
-  ["G then S", "Go to settings"],
-  ["/", "Search names, in the table"],
-  ["?", "Keys of the room you are in"],
+const TABLE: readonly KeyRow[] = [
+  ["Arrows", "To the next shape"],
+  ["PageUp PageDown", "By what is in view"],
+  ["Home End", "To the ends of a row"],
+  ["Ctrl+Home Ctrl+End", "To the first, the last"],
+  ["Shift+arrows", "Select on the way"],
+  ["Space", "Select, or no longer"],
+  ["Ctrl+A", "Select all"],
+  ["Escape", "Select none"],
+  ["Enter", "Open what is selected"],
+  ["/", "Search names"],
+];
+const MAP: readonly KeyRow[] = [
+  ["Arrows", "Move the map"],
+  ["+ −", "Nearer, farther"],
+  ["0", "The whole map"],
 ];
 
-/** Keys that work in every room. Rooms have sheets of their own behind "?". */
-export function ShortcutSheet({ onClose }: { onClose: () => void }) {
+/** Keys of every room, and of the table. The workbench has a sheet of its own behind "?". */
+export function ShortcutSheet({ room, onClose }: { room: string | null; onClose: () => void }) {
+  const me = useMe();
   return (
     <Dialog title="Keyboard shortcuts" size="small" onClose={onClose}>
-      <dl className={styles.keys}>
-        {ANYWHERE.map(([keys, meaning]) => (
-          <div key={keys} className={styles.row}>
-            <dt>{meaning}</dt>
-            <dd>
-              {keys.split(" ").map((key) => (key === "then" ? ` ${key} ` : <kbd key={key}>{key}</kbd>))}
-            </dd>
-          </div>
-        ))}
-      </dl>
+      {room === "table" && (
+        <>
+          <KeyGroup heading="Among shapes" rows={TABLE} />
+          <KeyGroup heading="On the map" rows={MAP} />
+        </>
+      )}
+      <KeyGroup heading="Rooms" rows={roomKeyRows(me)} />
+      <KeyGroup heading="Anywhere" rows={[["?", "The keys of where you are"]]} />
     </Dialog>
   );
 }

@@ -20,7 +20,7 @@ export function TopBar({ collection, room }: { collection: Collection | null; ro
       <div className={styles.end}>
         {collection && <TrainingMark collectionId={collection.id} />}
         <ConnectionMark />
-        <PersonMenu />
+        <PersonMenu room={room} />
       </div>
     </header>
   );
