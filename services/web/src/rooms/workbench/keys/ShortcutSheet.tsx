@@ -1,9 +1,12 @@
+import { useMe } from "../../../app/session/MeContext";
+import { KeyGroup, type KeyRow } from "../../../app/shell/KeyGroup";
+import { roomKeyRows } from "../../../app/shell/roomKeyRows";
 import { Dialog } from "../../../components";
 import styles from "./ShortcutSheet.module.css";
-import { SHORTCUTS } from "./shortcuts";
+import { SHORTCUTS, type Shortcut } from "./shortcuts";
 
 const GROUPS = ["Tools", "Parts", "Change", "Shapes", "View"] as const;
-const OF_A_VIEW: readonly (readonly [string, string])[] = [
+const OF_A_VIEW: readonly KeyRow[] = [
   ["Arrows", "Turn the shape"],
   ["Shift+arrows", "Move it"],
   ["+ −", "Nearer, farther"],
@@ -13,39 +16,20 @@ const OF_A_VIEW: readonly (readonly [string, string])[] = [
 
 /** Every key of the workbench, from the table that also runs them. */
 export function ShortcutSheet({ onClose }: { onClose: () => void }) {
+  const me = useMe();
   return (
     <Dialog title="Keys of the workbench" size="wide" onClose={onClose}>
       <div className={styles.groups}>
         {GROUPS.map((group) => (
-          <section key={group} className={styles.group}>
-            <h3 className={styles.heading}>{group}</h3>
-            <dl>
-              {SHORTCUTS.filter((shortcut) => shortcut.group === group).map(({ what, shown }) => (
-                <Row key={what} what={what} shown={shown} />
-              ))}
-            </dl>
-          </section>
+          <KeyGroup key={group} heading={group} rows={rowsOf(group)} />
         ))}
-        <section className={styles.group}>
-          <h3 className={styles.heading}>In a view</h3>
-          <dl>
-            {OF_A_VIEW.map(([shown, what]) => (
-              <Row key={what} what={what} shown={shown} />
-            ))}
-          </dl>
-        </section>
+        <KeyGroup heading="In a view" rows={OF_A_VIEW} />
+        <KeyGroup heading="Rooms" rows={roomKeyRows(me)} />
       </div>
     </Dialog>
   );
 }
 
-function Row({ what, shown }: { what: string; shown: string }) {
-  return (
-    <div className={styles.row}>
-      <dt>{what}</dt>
-      <dd>
-        <kbd>{shown}</kbd>
-      </dd>
-    </div>
-  );
+function rowsOf(group: Shortcut["group"]): readonly KeyRow[] {
+  return SHORTCUTS.filter((shortcut) => shortcut.group === group).map(({ shown, what }) => [shown, what]);
 }

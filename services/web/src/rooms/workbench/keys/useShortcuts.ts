@@ -1,8 +1,9 @@
 /** Listens to the workbench's keys, but where keys are text or belong to a control. */
 import { useEffect, useRef } from "react";
+import { hasOverlay } from "../../../app/shell/hasOverlay";
+import { isTyping } from "../../../app/shell/isTyping";
 import { shortcutOf, type WorkbenchActions } from "./shortcuts";
 
-const TEXT = "input:not([type=range],[type=checkbox],[type=radio]), textarea, select, [contenteditable]";
 /** Where Space and Enter press what has the focus. */
 const PRESSED = "button, a[href], summary, input[type=checkbox], [role^=menuitem]";
 
@@ -21,9 +22,11 @@ export function useShortcuts(actions: WorkbenchActions): void {
     };
     window.addEventListener("keydown", onKeyDown);
     window.addEventListener("mousedown", leaveFocus);
+    window.addEventListener("change", giveUpFocus);
     return () => {
       window.removeEventListener("keydown", onKeyDown);
       window.removeEventListener("mousedown", leaveFocus);
+      window.removeEventListener("change", giveUpFocus);
     };
   }, []);
 }
@@ -34,14 +37,15 @@ function leaveFocus(event: MouseEvent): void {
   if (isPressed && document.querySelector("dialog[open]") === null) event.preventDefault();
 }
 
+/** Nor does a list that was chosen from by a click: a letter is to be a key again, not to choose another of the list. */
+function giveUpFocus({ target }: Event): void {
+  if (!(target instanceof HTMLSelectElement) || hasOverlay()) return;
+  if (!target.matches(":focus-visible")) target.blur(); // who came to it by keys goes on choosing by them
+}
+
 function isMeantElsewhere({ target, key }: KeyboardEvent): boolean {
   if (!(target instanceof Element)) return false;
-  if (
-    target.closest(TEXT) !== null ||
-    document.querySelector("dialog[open], [popover]:popover-open[role=menu]") !== null
-  ) {
-    return true;
-  }
+  if (isTyping(target) || hasOverlay()) return true;
   return (key === " " || key === "Enter") && target.closest(PRESSED) !== null;
 }
 
