@@ -259,7 +259,7 @@ def test_training_leaves_nothing_but_the_model(trained: Trained) -> None:
 
 
 def test_shapes_without_a_labelled_face_are_left_out(trained: Trained) -> None:
-    assert sorted(trained.model.revision_ids) == sorted(trained.revisions)
+    assert sorted(trained.workspace.catalog.trained_on(trained.model.id)) == sorted(trained.revisions)
 
 
 def test_the_files_of_a_model_on_record_are_there(trained: Trained) -> None:

@@ -9,12 +9,14 @@ from partwise_service.schemas.base import Answer
 
 
 class ModelOut(Answer):
-    """A trained model. `recipe`: what it was trained with and how well it did inside its training set."""
+    """A trained model.
+
+    n_shapes : that it learned from. recipe : what it was trained with and how well it did inside its training set.
+    """
 
     id: int
     version: int
     n_shapes: int
-    revision_ids: list[int]
     recipe: dict[str, JsonValue]
     trained_at: datetime
 
@@ -24,10 +26,11 @@ class ModelOut(Answer):
         return cls(**{name: getattr(model, name) for name in cls.model_fields})
 
 
-class ModelsOut(Answer):
-    """Newest first."""
+class ModelsPage(Answer):
+    """A page of models, newest first. `next` goes into `before` for the next page; null at the end."""
 
     items: list[ModelOut]
+    next: str | None = None
 
 
 class EmbeddingPage(Answer):

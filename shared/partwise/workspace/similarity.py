@@ -43,11 +43,11 @@ def most_similar_first(workspace: Workspace, collection: Collection, model: Mode
 
 def newly_confirmed(workspace: Workspace, collection: Collection, model: Model) -> list[int]:
     """Shapes with labels that the model learned from and the one before it had not, the newest labels first."""
-    before: set[int] = set()
+    catalog, before = workspace.catalog, set[int]()
     if model.version > 1:
-        before.update(workspace.catalog.model(collection.id, model.version - 1).revision_ids)
-    new = sorted(set(model.revision_ids) - before, reverse=True)[:MAX_REFERENCES]
-    return [workspace.catalog.revision(revision_id).shape_id for revision_id in new]
+        before.update(catalog.trained_on(catalog.model(collection.id, model.version - 1).id))
+    new = sorted(set(catalog.trained_on(model.id)) - before, reverse=True)[:MAX_REFERENCES]
+    return [catalog.revision(revision_id).shape_id for revision_id in new]
 
 
 def nearest_distances(

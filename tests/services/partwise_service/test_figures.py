@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from safetensors.numpy import save
 
-from partwise.store.records import FirstShape
+from partwise.store.records import FirstShape, NewModel
 
 
 @pytest.fixture
@@ -24,6 +24,15 @@ def _path(mugs, ending: str) -> str:
 
 def test_models_are_listed(annotator, mugs) -> None:
     assert [model["version"] for model in annotator.get(_path(mugs, "models")).json()["items"]] == [1]
+
+
+def test_models_come_in_pages_newest_first(annotator, workspace, mugs) -> None:
+    workspace.catalog.save_model(NewModel(mugs.collection_id, {}, "models/2", ()))
+    page = annotator.get(_path(mugs, "models"), params={"limit": 1}).json()
+    assert ([model["version"] for model in page["items"]], page["next"]) == ([2], "2")
+    rest = annotator.get(_path(mugs, "models"), params={"before": page["next"]}).json()
+    assert ([model["version"] for model in rest["items"]], rest["next"]) == ([1], None)
+    assert "revision_ids" not in rest["items"][0]
 
 
 def test_before_there_is_an_embedding(annotator, mugs) -> None:

@@ -18,8 +18,12 @@ class ModelCatalog(Protocol):
 
     def model(self, collection_id: int, version: int) -> Model: ...
 
-    def models(self, collection_id: int) -> Sequence[Model]:
-        """Every model, newest first."""
+    def models(self, collection_id: int, *, before: int | None = None, limit: int = 1000) -> Sequence[Model]:
+        """A page of models, newest first: those of a version before the given one."""
+        ...
+
+    def trained_on(self, model_id: int) -> Sequence[int]:
+        """The label revisions that a model learned from."""
         ...
 
     def scores(self, shape_ids: SizedIterable[int], name: str) -> Mapping[int, Score]:

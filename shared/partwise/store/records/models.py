@@ -20,14 +20,13 @@ class NewModel:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """`version` counts from 1 within the collection."""
+    """`version` counts from 1 within the collection. n_shapes : that it learned from."""
 
     id: int
     collection_id: int
     version: int
     recipe: Mapping[str, Any]
     weights_key: str
-    revision_ids: tuple[int, ...]
     n_shapes: int
     trained_at: datetime
 

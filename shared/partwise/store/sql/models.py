@@ -24,6 +24,8 @@ from partwise.store.sql.places import set_ranks
 from partwise.store.sql.shapes import refuse_unknown_shapes
 from partwise.store.sql.state import shape_state
 
+_COLUMNS = tuple(column for column in t.model.c if column.name != "revision_ids")  # they grow with every label
+
 
 def save_model(connection: Connection, model: NewModel, now: datetime) -> Model:
     schema_version(connection, model.collection_id, for_update=True)  # two trainings never take one version
@@ -38,8 +40,7 @@ def save_model(connection: Connection, model: NewModel, now: datetime) -> Model:
         "n_shapes": len(shape_ids),
         "trained_at": now,
     }
-    model_id = connection.execute(insert(t.model).values(values).returning(t.model.c.id)).scalar_one()
-    return Model(**{**values, "id": model_id, "revision_ids": tuple(model.revision_ids)})
+    return _model(connection.execute(insert(t.model).values(values).returning(*_COLUMNS)).one())
 
 
 def _shapes_of(connection: Connection, model: NewModel) -> set[int]:
@@ -54,17 +55,30 @@ def _shapes_of(connection: Connection, model: NewModel) -> set[int]:
 
 
 def _model(row: Row[Any]) -> Model:
-    return Model(**{**row._mapping, "revision_ids": tuple(row.revision_ids)})
+    return Model(**row._mapping)
 
 
-def models(connection: Connection, collection_id: int, limit: int | None = None) -> Sequence[Model]:
+def models(connection: Connection, collection_id: int, before: int | None, limit: int) -> Sequence[Model]:
     schema_version(connection, collection_id)
-    query = select(t.model).where(t.model.c.collection_id == collection_id).order_by(t.model.c.version.desc())
-    return [_model(row) for row in connection.execute(query.limit(limit))]
+    query = select(*_COLUMNS).where(t.model.c.collection_id == collection_id)
+    if before is not None:
+        query = query.where(t.model.c.version < before)
+    return [_model(row) for row in connection.execute(query.order_by(t.model.c.version.desc()).limit(limit))]
+
+
+def latest_model(connection: Connection, collection_id: int) -> Model | None:
+    return next(iter(models(connection, collection_id, before=None, limit=1)), None)
+
+
+def trained_on(connection: Connection, model_id: int) -> Sequence[int]:
+    ids: list[int] | None = connection.execute(select(t.model.c.revision_ids).where(t.model.c.id == model_id)).scalar()
+    if ids is None:
+        raise NotFoundError(f"there is no model with id {model_id}; was it another workspace's?")
+    return ids
 
 
 def model(connection: Connection, collection_id: int, version: int) -> Model:
-    query = select(t.model).where(t.model.c.collection_id == collection_id, t.model.c.version == version)
+    query = select(*_COLUMNS).where(t.model.c.collection_id == collection_id, t.model.c.version == version)
     row = connection.execute(query).first()
     if row is None:
         raise NotFoundError(f"the collection has no model version {version}; was it trained?")
@@ -124,7 +138,7 @@ def replace_first_shapes(connection: Connection, collection_id: int, first_shape
     ]
     if rows:
         connection.execute(insert(t.first_shape), rows)
-    if not models(connection, collection_id, limit=1):  # from then on its scores say who is next
+    if latest_model(connection, collection_id) is None:  # from then on its scores say who is next
         set_ranks(connection, collection_id, {first.shape_id: first.ordinal + 1 for first in first_shapes})
 
 

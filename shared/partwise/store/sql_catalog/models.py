@@ -16,15 +16,19 @@ class SqlModelCatalog(SqlBase):
 
     def latest_model(self, collection_id: int) -> r.Model | None:
         with reading(self._engine) as connection:
-            return next(iter(models.models(connection, collection_id, limit=1)), None)
+            return models.latest_model(connection, collection_id)
 
     def model(self, collection_id: int, version: int) -> r.Model:
         with reading(self._engine) as connection:
             return models.model(connection, collection_id, version)
 
-    def models(self, collection_id: int) -> Sequence[r.Model]:
+    def models(self, collection_id: int, *, before: int | None = None, limit: int = 1000) -> Sequence[r.Model]:
         with reading(self._engine) as connection:
-            return models.models(connection, collection_id)
+            return models.models(connection, collection_id, before, limit)
+
+    def trained_on(self, model_id: int) -> Sequence[int]:
+        with reading(self._engine) as connection:
+            return models.trained_on(connection, model_id)
 
     def scores(self, shape_ids: SizedIterable[int], name: str) -> Mapping[int, r.Score]:
         with reading(self._engine) as connection:

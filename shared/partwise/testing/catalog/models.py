@@ -30,7 +30,10 @@ class ModelConformance:
         revisions = tuple(label(catalog, shape_id).id for shape_id in (ids[0], ids[0], ids[1]))
         saved = catalog.save_model(NewModel(collection.id, {"rate": 0.01}, "models/x", revisions))
         assert catalog.model(collection.id, 1) == saved
-        assert (saved.revision_ids, saved.n_shapes, saved.recipe) == (revisions, 2, {"rate": 0.01})
+        assert (saved.n_shapes, saved.recipe) == (2, {"rate": 0.01})
+        assert tuple(catalog.trained_on(saved.id)) == revisions
+        with raises(NotFoundError, "99"):
+            catalog.trained_on(99)
 
     def test_latest_model_is_the_newest(self, catalog: Catalog) -> None:
         collection, _ = add_collection(catalog, 0)
@@ -38,6 +41,13 @@ class ModelConformance:
         first, second = (save_model(catalog, collection.id) for _ in range(2))
         assert catalog.latest_model(collection.id) == second
         assert catalog.models(collection.id) == [second, first]
+
+    def test_models_come_in_pages(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        saved = [save_model(catalog, collection.id) for _ in range(3)]
+        page = catalog.models(collection.id, limit=2)
+        assert page == [saved[2], saved[1]]
+        assert catalog.models(collection.id, before=page[-1].version, limit=2) == [saved[0]]
 
     def test_a_model_of_unknown_labels_is_refused(self, catalog: Catalog) -> None:
         collection, _ = add_collection(catalog, 0)
