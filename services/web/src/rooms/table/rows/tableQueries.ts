@@ -129,6 +129,18 @@ export const waitingJobsQuery = (collectionId: number) =>
       ),
   });
 
+/** Jobs that ended without what they were for, newest first. */
+export const failedJobsQuery = (collectionId: number) =>
+  queryOptions({
+    queryKey: ["jobs", collectionId, "failed"],
+    queryFn: () =>
+      body(
+        api.GET("/api/v1/collections/{collection_id}/jobs", {
+          params: { path: { collection_id: collectionId }, query: { state: "failed", limit: 20 } },
+        }),
+      ),
+  });
+
 export function startTraining(collectionId: number) {
   const params = { path: { collection_id: collectionId } };
   return body(

@@ -1,28 +1,44 @@
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { runningJobsQuery } from "../../../api/queries";
 import { useHasRole } from "../../../app/session/MeContext";
-import { Button, Progress, Time, useToast } from "../../../components";
-import { modelsQuery, startTraining, waitingJobsQuery } from "../rows/tableQueries";
+import { Button, classes, Progress, Time, useToast } from "../../../components";
+import { opsQuery } from "../../operations/queries";
+import { failedJobsQuery, modelsQuery, startTraining, waitingJobsQuery } from "../rows/tableQueries";
 import styles from "./Toolbar.module.css";
-import { trainedOn, trainingJob, trainingShare, trainingWords } from "./trainingWords";
+import {
+  failedTraining,
+  failureWords,
+  trainedOn,
+  trainingJob,
+  trainingShare,
+  trainingWords,
+} from "./trainingWords";
 
-/** Which model the scores are from, where the next one is, and a button that asks for it. */
+/** Which model the scores are from, where the next one is or why there is none, and a button that asks for it. */
 export function TrainingLine({ collectionId }: { collectionId: number }) {
   const mayTrain = useHasRole("reviewer");
   const model = useQuery(modelsQuery(collectionId)).data?.items[0];
   const running = useQuery(runningJobsQuery(collectionId)).data?.items ?? [];
   const waiting = useQuery(waitingJobsQuery(collectionId)).data?.items ?? [];
+  const failures = useQuery({ ...failedJobsQuery(collectionId), enabled: mayTrain }).data?.items ?? [];
+  const version = model?.version ?? null;
   const job = trainingJob([...running, ...waiting]);
+  const failed = job === null ? failedTraining(failures, model) : null;
   const share = job && trainingShare(job);
   return (
-    <div className={styles.training} role="status" aria-label="Model">
+    <div className={classes(styles.training, failed && styles.failed)} role="status" aria-label="Model">
       {job ? (
         <>
-          <span>{trainingWords(job, model?.version ?? null)}</span>
+          <span>
+            {trainingWords(job, version)}
+            {job.state === "pending" && <Waiting collectionId={collectionId} since={job.created_at} />}
+          </span>
           {job.state === "running" && (
             <Progress label="Training" value={share ?? undefined} className={styles.trainingBar ?? ""} />
           )}
         </>
+      ) : failed ? (
+        <span>{failureWords(failed, version)}</span>
       ) : (
         <span>
           {model ? (
@@ -34,12 +50,26 @@ export function TrainingLine({ collectionId }: { collectionId: number }) {
           )}
         </span>
       )}
-      {mayTrain && job === null && <TrainNow collectionId={collectionId} />}
+      {mayTrain && job === null && (
+        <TrainNow collectionId={collectionId} words={failed ? "Try again" : "Train now"} />
+      )}
     </div>
   );
 }
 
-function TrainNow({ collectionId }: { collectionId: number }) {
+/** Since when a job waits; and whether it will for long, to those who are told of workers. */
+function Waiting({ collectionId, since }: { collectionId: number; since: string }) {
+  const isOperator = useHasRole("operator");
+  const workers = useQuery({ ...opsQuery(collectionId), enabled: isOperator }).data?.workers;
+  return (
+    <>
+      , asked for <Time at={since} />
+      {workers?.length === 0 && <strong>: no worker is running</strong>}
+    </>
+  );
+}
+
+function TrainNow({ collectionId, words }: { collectionId: number; words: string }) {
   const client = useQueryClient();
   const showToast = useToast();
   const training = useMutation({
@@ -49,7 +79,7 @@ function TrainNow({ collectionId }: { collectionId: number }) {
   });
   return (
     <Button size="small" isBusy={training.isPending} onClick={() => training.mutate()}>
-      Train now
+      {words}
     </Button>
   );
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Schemas } from "../../../api/client";
-import { trainingJob, trainingShare, trainingWords } from "./trainingWords";
+import { failedTraining, failureWords, trainingJob, trainingShare, trainingWords } from "./trainingWords";
 
 type Job = Schemas["JobOut"];
 
@@ -25,6 +25,24 @@ function aJob(given: Partial<Job>): Job {
 }
 
 const progress = (done: number, total: number | null, failed = 0) => ({ done, failed, total, message: "" });
+
+describe("failedTraining", () => {
+  const failed = aJob({ id: 4, state: "failed", finished_at: "2026-01-02T00:00:00Z", message: "too few" });
+  const scoring = aJob({ id: 5, kind: "evaluate", state: "failed", finished_at: "2026-01-03T00:00:00Z" });
+  const model = (trained_at: string) => ({ id: 1, version: 3, n_shapes: 2, recipe: {}, trained_at });
+
+  it("is the newest that failed, if no model has come since", () => {
+    expect(failedTraining([scoring, failed], undefined)).toBe(failed);
+    expect(failedTraining([failed], model("2026-01-01T00:00:00Z"))).toBe(failed);
+    expect(failedTraining([failed], model("2026-01-02T00:00:01Z"))).toBeNull();
+    expect(failedTraining([scoring], undefined)).toBeNull();
+  });
+
+  it("says why", () => {
+    expect(failureWords(failed, null)).toBe("Model 1 could not be trained: too few");
+    expect(failureWords(aJob({}), 3)).toBe("Model 4 could not be trained");
+  });
+});
 
 describe("trainingJob", () => {
   it("is what runs before what waits, and training before scoring", () => {

@@ -18,6 +18,20 @@ export function trainingJob(jobs: readonly Job[]): Job | null {
   return null;
 }
 
+/** The newest training, if it failed and no model has come of another since. jobs : that failed, newest first. */
+export function failedTraining(jobs: readonly Job[], model: Schemas["ModelOut"] | undefined): Job | null {
+  const failed = jobs.find((job) => job.kind === "train");
+  if (failed === undefined || failed.finished_at === null) return null;
+  const isOld = model !== undefined && Date.parse(model.trained_at) > Date.parse(failed.finished_at);
+  return isOld ? null : failed;
+}
+
+/** "Model 4 could not be trained: …". version : of the newest model; null before the first. */
+export function failureWords({ message }: Job, version: number | null): string {
+  const words = `Model ${(version ?? 0) + 1} could not be trained`;
+  return message === "" ? words : `${words}: ${message}`;
+}
+
 /** "Model 4 is being trained: 62 %". `version`: of the newest model; null before the first. */
 export function trainingWords(job: Job, version: number | null): string {
   const next = job.kind === "train" ? (version ?? 0) + 1 : (version ?? 1);
