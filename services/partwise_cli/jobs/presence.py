@@ -1,11 +1,15 @@
-"""`Presence`: tells the catalog that a worker is there and what it takes of its machine, at work or waiting."""
+"""`Presence`: tells the catalog that a worker is there and what it takes of its machine, at work or waiting.
+
+It also lets jobs of owners that are silent be begun again: all workers may be at jobs that take days.
+"""
 
 import logging
 import os
+from datetime import timedelta
 from types import TracebackType
 from typing import Self
 
-from partwise.errors import StoreError
+from partwise.errors import PartwiseError, StoreError
 from partwise.store.catalog import JobCatalog
 from partwise.store.records import WorkerUsage
 from partwise.workspace.disk import free_bytes
@@ -19,13 +23,19 @@ EVERY_S = 10.0
 
 
 class Presence(Repeated):
-    """Of one worker while the block lasts, from a thread of its own. array_url : of the workspace's array store."""
+    """Of one worker while the block lasts, from a thread of its own.
 
-    def __init__(self, catalog: JobCatalog, owner: str, array_url: str, every_s: float = EVERY_S) -> None:
-        super().__init__(f"presence of {owner}", every_s)
+    array_url : of the workspace's array store. lost_after : of silence an owner of a job counts as lost.
+    """
+
+    def __init__(
+        self, catalog: JobCatalog, owner: str, array_url: str, lost_after: timedelta, every_s: float | None = None
+    ) -> None:
+        super().__init__(f"presence of {owner}", EVERY_S if every_s is None else every_s)
         self._catalog = catalog
         self._owner = owner
         self._array_url = array_url
+        self._lost_after = lost_after
         self._actors = ActorMemory(0, 0)
 
     def __enter__(self) -> Self:
@@ -56,5 +66,7 @@ class Presence(Repeated):
     def act(self) -> None:
         try:
             self._catalog.note_worker(self._owner, self.usage())
-        except StoreError as error:
-            logger.warning("what a worker takes is not on record: %s", error)
+            for lost in self._catalog.requeue_lost_jobs(self._lost_after):
+                logger.warning("job %d: %s", lost.id, lost.progress.message)
+        except PartwiseError as error:  # the thread's edge: the next turn may fare better
+            logger.warning("a worker's sign of life is not on record: %s", error)

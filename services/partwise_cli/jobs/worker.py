@@ -6,7 +6,7 @@ import secrets
 import socket
 import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 
 from partwise.errors import ConflictError, NotFoundError, PartwiseError, StoreError, WorkerError
 from partwise.store.records import Collection as ShapeCollection
@@ -57,7 +57,8 @@ class Worker:
         self._collection_id = collection_id
         self._cluster = cluster
         self._on_job = on_job
-        self._presence = Presence(workspace.catalog, self.owner, workspace.array_url)
+        lost_after = timedelta(seconds=workspace.config.jobs.lost_after_s)
+        self._presence = Presence(workspace.catalog, self.owner, workspace.array_url, lost_after)
         self._never = threading.Event()
 
     def run(self, *, once: bool = False) -> None:
@@ -87,8 +88,7 @@ class Worker:
                 self._never.wait(self._workspace.config.jobs.poll_s)
 
     def work_once(self) -> bool:
-        """Claims the next job and does it; whether there was one. Jobs of owners that are silent go back before."""
-        self._requeue_lost()
+        """Claims the next job and does it; whether there was one."""
         job = self._catalog.claim_job(self.owner, self._kinds, collection_id=self._collection_id)
         if job is None:
             return False
@@ -96,11 +96,6 @@ class Worker:
         self._do(job)
         self._on_job(self._catalog.job(job.id))
         return True
-
-    def _requeue_lost(self) -> None:
-        silent = timedelta(seconds=self._workspace.config.jobs.lost_after_s)
-        for lost in self._catalog.requeue_lost_jobs(datetime.now(UTC) - silent):
-            logger.warning("job %d: %s", lost.id, lost.progress.message)
 
     def _do(self, job: Job) -> None:
         try:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from datetime import UTC, datetime
+from datetime import timedelta
 
 import pytest
 from sqlalchemy import event
@@ -58,7 +58,7 @@ _QUERIES: dict[str, Callable[[SqlCatalog, int], object]] = {
     "blind checks": lambda catalog, i: catalog.blind_checks(i),
     "jobs": lambda catalog, i: catalog.jobs(i),
     "claim a job": lambda catalog, i: catalog.claim_job("w1"),
-    "lost jobs": lambda catalog, i: catalog.requeue_lost_jobs(datetime(2020, 1, 1, tzinfo=UTC)),
+    "lost jobs": lambda catalog, i: catalog.requeue_lost_jobs(timedelta(hours=1)),
     "authenticate": lambda catalog, i: catalog.authenticate("pw_x"),
     "tokens of a person": lambda catalog, i: catalog.tokens(person_id=1),
     "events": lambda catalog, i: catalog.events(after=7, collection_ids=[i]),
@@ -159,6 +159,12 @@ def test_queue_is_read_in_order_of_the_index(catalog: SqlCatalog) -> None:
     catalog.queue(collection.id, "entropy", after=QueueAnchor(0.5, 7))
     assert any("ix_score_by_value" in step for step in plans)
     assert not any("TEMP B-TREE" in step for step in plans)
+
+
+def test_closed_drafts_are_passed_by(catalog: SqlCatalog) -> None:
+    drafts = [step for step in _plans(catalog, "open drafts") if "draft" in step]
+    assert drafts
+    assert all("uq_draft_open" in step for step in drafts)
 
 
 def test_free_places_are_read_in_order_of_their_own_index(catalog: SqlCatalog) -> None:

@@ -3,13 +3,18 @@
 from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
 from threading import Barrier
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
+from sqlalchemy import text
 
 from partwise.errors import ConflictError, StaleDraftError
+from partwise.store.engine import reading
+from partwise.store.open import open_catalog
 from partwise.store.records import (
     JobKind,
     JobState,
@@ -18,10 +23,15 @@ from partwise.store.records import (
     NewConfirmation,
     NewConsensus,
     RevisionKind,
+    ShapeState,
 )
+from partwise.store.reviews import ReviewReason
+from partwise.store.sql import returns
+from partwise.store.sql.returns import _instead
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.testing.catalog.confirmations import CLOSE
 from partwise.testing.catalog.samples import blank_draft, claim, confirm, label, ready_shapes, strokes
+from partwise.testing.postgres import ReusedDatabase
 
 T = TypeVar("T")
 N_THREADS = 8
@@ -181,6 +191,41 @@ def test_ranking_and_claiming_at_once_disturb_nobody(shared: SqlCatalog) -> None
     assert len(held) == len(set(held)) == 2 * len(people)
 
 
+def test_a_lost_job_beside_which_another_is_asked_for_right_now_gives_way_to_it(
+    postgres_catalog: SqlCatalog, reused: ReusedDatabase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In SQLite, whose writers come one after the other, nobody can come between."""
+    collection, _ = ready_shapes(postgres_catalog, 1)
+    job = postgres_catalog.enqueue_job(collection.id, JobKind.TRAIN)
+    postgres_catalog.claim_job("w1")
+    asked: list[int] = []
+
+    def looks_too_early(*args: Any) -> dict[str, Any] | None:
+        found = _instead(*args)
+        if not asked:
+            with open_catalog(reused.url) as another:
+                asked.append(another.enqueue_job(collection.id, JobKind.TRAIN).id)
+        return found
+
+    monkeypatch.setattr(returns, "_instead", looks_too_early)
+    (lost,) = postgres_catalog.requeue_lost_jobs(timedelta(hours=-1))
+    assert (lost.id, lost.state) == (job.id, JobState.CANCELLED)
+    assert f"job {asked[0]} does its work" in lost.progress.message
+
+
+@pytest.mark.parametrize("wrong_by", [timedelta(hours=-1), timedelta(hours=1)])
+def test_an_owner_is_not_lost_because_its_hosts_clock_is_wrong(shared: SqlCatalog, wrong_by: timedelta) -> None:
+    collection, _ = ready_shapes(shared, 1)
+    shared.enqueue_job(collection.id, JobKind.TRAIN)
+    elsewhere = SqlCatalog(shared._engine, lambda: datetime.now(UTC) + wrong_by)
+    job = elsewhere.claim_job("w1")
+    assert job is not None
+    assert elsewhere.requeue_lost_jobs(timedelta(minutes=1)) == []
+    elsewhere.heartbeat_job(job.id, "w1")
+    assert shared.requeue_lost_jobs(timedelta(minutes=1)) == []
+    assert [each.id for each in shared.requeue_lost_jobs(timedelta(hours=-0.5))] == [job.id]
+
+
 def test_events_are_missed_by_nobody_who_reads_on(shared: SqlCatalog) -> None:
     collection, _ = ready_shapes(shared, N_THREADS)
     people = [shared.add_person(f"p{i}") for i in range(N_THREADS - 1)]
@@ -204,3 +249,70 @@ def test_events_are_missed_by_nobody_who_reads_on(shared: SqlCatalog) -> None:
 
     assert _at_once([read, *(work(person.id) for person in people)]) == [None] * N_THREADS
     assert seen == [event.id for event in shared.events(after=0)]
+
+
+def test_a_shape_is_reopened_or_claimed_and_no_place_of_a_holder_is_free(shared: SqlCatalog) -> None:
+    collection, (shape_id, other) = ready_shapes(shared, 2)
+    operator = shared.add_person("oscar")
+    shared.claim_shape(other, operator.id, 60)
+    people = [shared.add_person(f"p{i}") for i in range(N_THREADS - 2)]
+
+    def reopen() -> None:
+        for _ in range(20):
+            with suppress(ConflictError):
+                shared.reopen_shape(shape_id, operator.id)
+
+    def work(person_id: int, turn: int) -> Callable[[], None]:
+        def run() -> None:
+            for _ in range(10):
+                with suppress(ConflictError):
+                    by_name = shared.claim_shape(shape_id, person_id, 60) if turn % 2 else None
+                    lease = by_name or shared.claim_next(NewClaim(collection.id, person_id, 60, 0.5))
+                    if lease is not None:
+                        assert _free_places_of_holders(shared) == 0
+                        shared.release_lease(lease.id, person_id)
+
+        return run
+
+    found = _at_once([reopen, reopen, *(work(person.id, turn) for turn, person in enumerate(people))])
+    assert found == [None] * N_THREADS
+
+
+def _free_places_of_holders(catalog: SqlCatalog) -> int:
+    held = "lease.shape_id = queue_rank.shape_id AND lease.slot = queue_rank.slot AND lease.released_at IS NULL"
+    query = f"SELECT count(*) FROM queue_rank JOIN lease ON {held} WHERE queue_rank.lease_id IS NULL"  # noqa: S608 # no input
+    with reading(catalog._engine) as connection:
+        return connection.execute(text(query)).scalar_one()
+
+
+def test_labels_of_many_are_accepted_while_parts_change(shared: SqlCatalog) -> None:
+    collection, shape_ids = ready_shapes(shared, 20)
+    heads = [label(shared, shape_id) for shape_id in shape_ids]
+    rita = shared.add_person("rita")
+    shared.add_part(collection.id, "lid")
+    reviews = [each.id for each in shared.open_reviews(collection.id)]
+
+    def accept_each() -> None:
+        for review_id in reviews:
+            with suppress(ConflictError):
+                shared.accept_review(review_id, rita.id)
+
+    def accept_all() -> None:
+        for _ in range(4):
+            shared.accept_reviews(collection.id, ReviewReason.SCHEMA, rita.id, limit=7)
+
+    def add_parts() -> None:
+        for number in range(3):
+            shared.add_part(collection.id, f"part {number}")
+
+    def relabel() -> None:
+        for shape_id in shape_ids[::-1]:
+            label(shared, shape_id)
+
+    found = _at_once([add_parts, accept_each, accept_all, relabel])
+    assert found == [None] * 4
+    states = {row.shape.id: row.state for row in shared.list_shapes(collection.id)}
+    assert states == shared.shape_states(shape_ids)
+    shared.add_part(collection.id, "last")
+    assert {review.shape_id for review in shared.open_reviews(collection.id)} == {head.shape_id for head in heads}
+    assert {row.state for row in shared.list_shapes(collection.id)} == {ShapeState.REVIEW}

@@ -1,7 +1,7 @@
 """Jobs: rows that workers pick up."""
 
 from collections.abc import Mapping, Sequence
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any, Protocol
 
 from partwise.store.records import Job, JobKind, JobState, Model, NewModel, Progress, SeenWorker, WorkerUsage
@@ -81,9 +81,10 @@ class JobCatalog(Protocol):
         """Enqueue a failed or cancelled job's work again, as a new job. `ConflictError` unless it ended so."""
         ...
 
-    def requeue_lost_jobs(self, silent_since: datetime, *, max_attempts: int = 3) -> Sequence[Job]:
-        """Let running jobs without a heartbeat since then be begun again; as they are then.
+    def requeue_lost_jobs(self, silent_for: timedelta, *, max_attempts: int = 3) -> Sequence[Job]:
+        """Let running jobs without a heartbeat for longer than this be begun again; as they are then.
 
+        Heartbeats are told and compared in the database's own time, as hosts' clocks differ.
         One that was begun `max_attempts` times fails. One beside which another of its kind waits is cancelled, as that
         one does its work.
         """

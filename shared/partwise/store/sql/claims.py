@@ -8,6 +8,7 @@ from sqlalchemy import Connection, Select, case, exists, func, or_, select
 
 from partwise.store import tables as t
 from partwise.store.records import BACKGROUND_KINDS, COALESCED_KINDS, Job, JobKind, JobState
+from partwise.store.sql.dialect import seconds_ago
 from partwise.store.sql.jobs import PENDING, RUNNING, changed_job, to_job
 from partwise.store.sql.tally import restart_count
 
@@ -23,7 +24,7 @@ def claim_job(
         "owner": owner,
         "attempts": t.job.c.attempts + 1,
         "started_at": now,
-        "heartbeat_at": now,
+        "heartbeat_at": seconds_ago(0.0),
         "message": "",  # of the time before, if there was one
     }
     if row.kind == JobKind.TRAIN:

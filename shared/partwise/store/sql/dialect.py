@@ -1,6 +1,7 @@
 """What SQLite and PostgreSQL say differently, and batches small enough for both."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -9,6 +10,8 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import FunctionElement
+
+from partwise.store.tables.base import UtcDateTime
 
 T = TypeVar("T")
 
@@ -42,6 +45,25 @@ def _in_sqlite(element: has_in_it, compiler: SQLCompiler, **options: Any) -> str
 def _in_postgresql(element: has_in_it, compiler: SQLCompiler, **options: Any) -> str:
     text, part = (compiler.process(each, **options) for each in element.clauses)
     return f'strpos(lower({text} COLLATE "C"), lower({part} COLLATE "C")) > 0'
+
+
+class seconds_ago(FunctionElement[datetime]):  # noqa: N801 # as above
+    """The database's own time, so many seconds ago: times that hosts compare with each other must be of one clock."""
+
+    inherit_cache = True
+    type = UtcDateTime()
+
+
+@compiles(seconds_ago, "sqlite")
+def _ago_in_sqlite(element: seconds_ago, compiler: SQLCompiler, **options: Any) -> str:
+    (seconds,) = (compiler.process(each, **options) for each in element.clauses)
+    return f"strftime('%Y-%m-%d %H:%M:%f', 'now', (0 - {seconds}) || ' seconds') || '000'"  # as times are held there
+
+
+@compiles(seconds_ago, "postgresql")
+def _ago_in_postgresql(element: seconds_ago, compiler: SQLCompiler, **options: Any) -> str:
+    (seconds,) = (compiler.process(each, **options) for each in element.clauses)
+    return f"now() - {seconds} * interval '1 second'"
 
 
 def insert_for(connection: Connection, table: Table) -> sqlite.Insert | postgresql.Insert:

@@ -10,7 +10,7 @@ from partwise.errors import ConflictError, NotFoundError, ParameterError
 from partwise.store import tables as t
 from partwise.store.records import EventKind, Job, JobKind, JobState, NewEvent, Progress
 from partwise.store.sql.collections import schema_version
-from partwise.store.sql.dialect import insert_for
+from partwise.store.sql.dialect import insert_for, seconds_ago
 from partwise.store.sql.events import append_events
 
 # written out, not bound: a partial index serves only a query whose text repeats the index's condition
@@ -74,7 +74,7 @@ def jobs(
 
 def heartbeat_job(connection: Connection, job_id: int, owner: str, progress: Progress | None, now: datetime) -> Job:
     known = own_running(connection, job_id, owner)
-    values: dict[str, Any] = {"heartbeat_at": now}
+    values: dict[str, Any] = {"heartbeat_at": seconds_ago(0.0)}
     if progress is None or progress == known.progress:
         return to_job(connection.execute(update_job(job_id, values)).one())
     return changed_job(connection, job_id, values | _columns(progress), now)

@@ -1,24 +1,27 @@
 """Jobs that go back to be begun again: their owner was lost, has to stop, or could not do them now."""
 
 from collections.abc import Callable
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, select
+from sqlalchemy.exc import IntegrityError
 
 from partwise.store import tables as t
 from partwise.store.records import COALESCED_KINDS, Job, JobState
+from partwise.store.sql.dialect import seconds_ago
 from partwise.store.sql.events import append_events
-from partwise.store.sql.jobs import PENDING, RUNNING, changed_job, job_event, own_running, to_job, update_job
+from partwise.store.sql.jobs import PENDING, RUNNING, job_event, own_running, to_job, update_job
 
 
-def requeue_lost_jobs(connection: Connection, silent_since: datetime, max_attempts: int, now: datetime) -> list[Job]:
+def requeue_lost_jobs(connection: Connection, silent_for: timedelta, max_attempts: int, now: datetime) -> list[Job]:
     def after_loss(lost: Job) -> dict[str, Any]:
         if lost.attempts >= max_attempts:
             return _failed(f"its owner was lost {lost.attempts} times; look at the workers' logs", now)
         return _pending("its owner is gone; it will be begun again")
 
-    return _all_back(connection, t.job.c.heartbeat_at < silent_since, "its owner is gone", after_loss, now)
+    is_silent = t.job.c.heartbeat_at < seconds_ago(silent_for.total_seconds())
+    return _all_back(connection, is_silent, "its owner is gone", after_loss, now)
 
 
 def release_jobs(connection: Connection, owner: str, message: str, now: datetime) -> list[Job]:
@@ -31,8 +34,10 @@ def release_jobs(connection: Connection, owner: str, message: str, now: datetime
 def return_job(connection: Connection, job_id: int, owner: str, message: str, max_attempts: int, now: datetime) -> Job:
     known = own_running(connection, job_id, owner)
     is_last = known.attempts >= max_attempts
-    values = _instead(connection, known, message, now) or (_failed(message, now) if is_last else _pending(message))
-    return changed_job(connection, job_id, values, now)
+    values = _failed(message, now) if is_last else _pending(message)
+    returned = _back(connection, known, message, values, now)
+    append_events(connection, [job_event(returned)], now)
+    return returned
 
 
 def _all_back(
@@ -49,12 +54,21 @@ def _all_back(
         .with_for_update(skip_locked=True)
     )
     back = [to_job(row) for row in connection.execute(query)]
-    changed = [
-        to_job(connection.execute(update_job(each.id, _instead(connection, each, why, now) or after(each))).one())
-        for each in back
-    ]
+    changed = [_back(connection, each, why, after(each), now) for each in back]
     append_events(connection, [job_event(each) for each in changed], now)
     return changed
+
+
+def _back(connection: Connection, job: Job, why: str, values: dict[str, Any], now: datetime) -> Job:
+    """The job with these values, or ended where it need not be begun again."""
+    instead = _instead(connection, job, why, now)
+    if instead is not None:
+        return to_job(connection.execute(update_job(job.id, instead)).one())
+    try:
+        with connection.begin_nested():
+            return to_job(connection.execute(update_job(job.id, values)).one())
+    except IntegrityError:  # another was asked for in this very moment, and waits now
+        return _back(connection, job, why, values, now)
 
 
 def _instead(connection: Connection, back: Job, why: str, now: datetime) -> dict[str, Any] | None:

@@ -1,7 +1,7 @@
 """Jobs."""
 
 from collections.abc import Mapping, Sequence
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any
 
 from partwise.store import records as r
@@ -65,9 +65,9 @@ class SqlJobCatalog(SqlBase):
         with writing(self._engine) as connection:
             return jobs.retry_job(connection, job_id, self._clock())
 
-    def requeue_lost_jobs(self, silent_since: datetime, *, max_attempts: int = 3) -> Sequence[r.Job]:
+    def requeue_lost_jobs(self, silent_for: timedelta, *, max_attempts: int = 3) -> Sequence[r.Job]:
         with writing(self._engine) as connection:
-            return returns.requeue_lost_jobs(connection, silent_since, max_attempts, self._clock())
+            return returns.requeue_lost_jobs(connection, silent_for, max_attempts, self._clock())
 
     def note_worker(self, owner: str, usage: r.WorkerUsage) -> None:
         with writing(self._engine) as connection:

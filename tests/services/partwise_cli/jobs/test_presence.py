@@ -14,21 +14,21 @@ def _seen(workspace) -> Sequence[SeenWorker]:
 
 
 def test_it_takes_memory_and_has_room_on_its_disk(workspace) -> None:
-    usage = Presence(workspace.catalog, "w1", workspace.array_url).usage()
+    usage = Presence(workspace.catalog, "w1", workspace.array_url, timedelta(minutes=1)).usage()
     assert usage.memory_bytes > 10**7
     assert usage.free_bytes is not None
     assert (usage.n_actors, usage.actor_bytes) == (0, 0)
 
 
 def test_what_its_actors_take_is_what_they_told_last(workspace) -> None:
-    presence = Presence(workspace.catalog, "w1", workspace.array_url)
+    presence = Presence(workspace.catalog, "w1", workspace.array_url, timedelta(minutes=1))
     for event in (ActorMemory(2, 500), ActorMemory(1, 300), InFlight(4)):
         presence.on_event(event)
     assert (presence.usage().n_actors, presence.usage().actor_bytes) == (1, 300)
 
 
 def test_a_store_that_is_no_folder_has_no_disk(workspace) -> None:
-    assert Presence(workspace.catalog, "w1", "s3://bucket/arrays").usage().free_bytes is None
+    assert Presence(workspace.catalog, "w1", "s3://bucket/arrays", timedelta(minutes=1)).usage().free_bytes is None
 
 
 def test_a_worker_is_there_while_it_works_and_no_longer(workspace, enqueue, worker) -> None:

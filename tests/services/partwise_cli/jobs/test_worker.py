@@ -1,16 +1,27 @@
 """Workers: one owner for each job, whatever becomes of it; the worker outlives what its jobs do."""
 
 import threading
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 
 import pytest
+from sqlalchemy import update
 
 from partwise.errors import NotEnoughDataError, StoreError, WorkerError
+from partwise.store import tables as t
 from partwise.store.records import JobKind, JobState
-from partwise.store.sql_catalog import SqlCatalog
+from partwise.store.sql.dialect import seconds_ago
+from partwise_cli.jobs import presence
 from partwise_cli.jobs.stopping import JobStoppedError, StopReason
 from partwise_cli.jobs.work import Outcome
 from partwise_cli.jobs.worker import new_owner
+
+AT_ONCE = timedelta(hours=-1)
+
+
+def make_silent(workspace, job) -> None:
+    """As if its owner had said nothing for five minutes."""
+    with workspace.catalog._engine.begin() as connection:
+        connection.execute(update(t.job).where(t.job.c.id == job.id).values(heartbeat_at=seconds_ago(300.0)))
 
 
 def done(work) -> Outcome:
@@ -162,17 +173,38 @@ def test_a_job_that_gives_way_goes_on_after_the_other(worker, workspace, enqueue
 
 
 def test_jobs_of_silent_owners_are_begun_again(worker, workspace, enqueue) -> None:
-    long_ago = SqlCatalog(workspace.catalog._engine, lambda: datetime.now(UTC) - timedelta(minutes=5))
     job = enqueue(JobKind.EXPORT)
-    long_ago.claim_job("gone")
+    workspace.catalog.claim_job("gone")
+    make_silent(workspace, job)
     worker({JobKind.EXPORT: done}).run(once=True)
     assert (workspace.catalog.job(job.id).state, workspace.catalog.job(job.id).attempts) == (JobState.DONE, 2)
+
+
+def test_jobs_of_owners_that_fall_silent_are_begun_again_while_all_work(
+    worker, workspace, enqueue, monkeypatch
+) -> None:
+    monkeypatch.setattr(presence, "EVERY_S", 0.01)
+    train, gave_way = enqueue(JobKind.TRAIN), []
+    workspace.catalog.claim_job("gone")
+
+    def evaluate(work) -> Outcome:
+        """Goes on until something of more weight waits, as evaluations do."""
+        make_silent(workspace, train)
+        while work.waiting_job(also_background=False) is None:
+            threading.Event().wait(0.005)
+        gave_way.append(work.job.id)
+        return Outcome("")
+
+    job = enqueue(JobKind.EVALUATE)
+    worker({JobKind.TRAIN: done, JobKind.EVALUATE: evaluate}).run(once=True)
+    assert gave_way == [job.id]
+    assert workspace.catalog.job(train.id).state is JobState.DONE
 
 
 def test_jobs_of_owners_that_live_are_left_to_them(worker, workspace, enqueue) -> None:
     job = enqueue(JobKind.EXPORT)
     workspace.catalog.claim_job("alive")
-    worker({JobKind.EXPORT: done}).work_once()
+    worker({JobKind.EXPORT: done}).run(once=True)
     assert (workspace.catalog.job(job.id).state, workspace.catalog.job(job.id).owner) == (JobState.RUNNING, "alive")
 
 
@@ -180,7 +212,7 @@ def test_a_job_that_another_owner_has_by_now_is_left_alone(worker, workspace, en
     job = enqueue(JobKind.EXPORT)
 
     def lost_meanwhile(work):
-        workspace.catalog.requeue_lost_jobs(datetime.now(UTC) + timedelta(hours=1))
+        workspace.catalog.requeue_lost_jobs(AT_ONCE)
         workspace.catalog.claim_job("another")
         until_stopped(work)
 
@@ -193,7 +225,7 @@ def test_an_end_that_comes_too_late_changes_nothing(worker, workspace, enqueue) 
     job = enqueue(JobKind.EXPORT)
 
     def finishes_late(work) -> Outcome:
-        workspace.catalog.requeue_lost_jobs(datetime.now(UTC) + timedelta(hours=1))
+        workspace.catalog.requeue_lost_jobs(AT_ONCE)
         workspace.catalog.claim_job("another")
         return Outcome("mine")
 
