@@ -1,20 +1,22 @@
 import { Box, CircleAlert, ImageOff } from "lucide-react";
-import { useLayoutEffect, useRef, useState } from "react";
+import { useLayoutEffect, useRef } from "react";
 import styles from "./ShapeTile.module.css";
+import { usePictureTries } from "./usePictureTries";
 
 /** A shape's picture. It is asked for when it comes near, and no longer once it has been scrolled past. */
 export function TilePicture({ address, isFailed }: { address: string | null; isFailed: boolean }) {
-  const [missing, setMissing] = useState<string | null>(null);
+  const { isMissing, setMissing } = usePictureTries(address);
+  const drawn = isMissing ? null : address;
   const image = useRef<HTMLImageElement>(null);
   useLayoutEffect(() => {
     const shown = image.current;
-    if (shown === null || address === null) return undefined;
-    shown.src = address;
+    if (shown === null || drawn === null) return undefined;
+    shown.src = drawn;
     // Taking an image out of the page does not stop its download; taking its address does. It has to be taken while
     // the image is in the page, which effects of layout are early enough for: else Chromium keeps the element for good.
     return () => shown.removeAttribute("src");
-  }, [address]);
-  if (address === null || missing === address) {
+  }, [drawn]);
+  if (drawn === null) {
     const Icon = isFailed ? CircleAlert : address === null ? Box : ImageOff;
     return (
       <span className={styles.noPicture}>
@@ -32,7 +34,7 @@ export function TilePicture({ address, isFailed }: { address: string | null; isF
       loading="lazy"
       decoding="async"
       fetchPriority="low"
-      onError={() => setMissing(address)}
+      onError={() => setMissing(drawn)}
     />
   );
 }
