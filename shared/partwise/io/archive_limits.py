@@ -18,8 +18,8 @@ class ArchiveLimits:
     """Upper bounds on one archive, all inclusive.
 
     max_members : entries, folders among them. max_total_bytes : of all members together, expanded.
-    max_ratio : expanded bytes to compressed ones, of a zip's member or a tar.gz so far, one MiB of the whole aside; text
-    of meshes reaches about 10.
+    max_ratio : expanded bytes to compressed ones, of a zip's member or a tar.gz so far, one MiB in all aside; text of
+    meshes reaches about 10.
     member : of each file that is read.
     """
 
