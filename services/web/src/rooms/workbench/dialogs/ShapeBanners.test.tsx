@@ -1,6 +1,6 @@
 // @vitest-environment jsdom
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
-import { cleanup, fireEvent, render, screen } from "@testing-library/react";
+import { act, cleanup, fireEvent, render, screen } from "@testing-library/react";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { api } from "../../../api/client";
 import { ToastProvider } from "../../../components";
@@ -96,8 +96,10 @@ describe("two versions", () => {
   it("are settled once, however often the button is pressed", () => {
     save.set(CONFLICT);
     show();
-    fireEvent.click(button("Put mine on top"));
-    fireEvent.click(button("Put mine on top"));
+    act(() => {
+      button("Put mine on top").click();
+      button("Put mine on top").click();
+    });
     fireEvent.click(button("Take the saved one"));
     expect(open.keepMine).toHaveBeenCalledOnce();
     expect(open.draft.sender.takeTheirs).not.toHaveBeenCalled();

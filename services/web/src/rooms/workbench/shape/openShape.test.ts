@@ -1,5 +1,5 @@
 import "fake-indexeddb/auto";
-import { beforeEach, describe, expect, it } from "vitest";
+import { beforeEach, describe, expect, it, vi } from "vitest";
 import { DraftSession } from "../../../drafts/draftSession";
 import { IndexedDbOutbox } from "../../../drafts/indexedDbOutbox";
 import type { Lease } from "../../../drafts/leaseApi";
@@ -264,12 +264,15 @@ describe("strokes of another tab", () => {
       newStroke({ kind: "undo" }, { ...place, sequence: 1 }),
       newStroke(assign(5, 1, 2), { ...place, sequence: 2 }),
     ];
+    const apply = vi.spyOn(shape.editor, "apply");
     for (const each of strokes) {
       shape.draft.sender.follow(each);
       shape.draft.listener?.onFollowed(each);
     }
     expect(shape.canEdit).toBe(false);
     await new Promise<void>((resolve) => shape.isBehind.subscribe(resolve));
+    await settled();
+    expect(apply).toHaveBeenCalledTimes(3);
     expect([...shape.labels]).toEqual([0, 0, 0, 0, 0, 2]);
     expect(shape.canEdit).toBe(true);
   });
