@@ -49,10 +49,6 @@ describe("what an event makes stale", () => {
   });
   it("how right bulk acceptance was, by what people label", () =>
     expect(isStaleAfter(event("shape"), ["accepts", 3])).toBe(true));
-  it("the map, once a job has placed shapes on it", () => {
-    expect(isStaleAfter(event("job", 3, { state: "done", job_kind: "preprocess" }), ["map", 3])).toBe(true);
-    expect(isStaleAfter(event("job", 3, { state: "done", job_kind: "train" }), ["map", 3])).toBe(false);
-  });
 });
 
 describe("rows that are shown", () => {

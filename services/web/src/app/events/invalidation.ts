@@ -1,4 +1,4 @@
-/** Which answers of the service no longer hold after an event. */
+/** Which answers of the service no longer hold after an event. The rows of the table and the map see to their own. */
 import type { Query } from "@tanstack/react-query";
 import type { EventKind, ServiceEvent } from "../../api/events";
 import type { About } from "../../api/queryKeys";
@@ -13,8 +13,6 @@ const STALE_AFTER: Readonly<Record<EventKind, readonly About[]>> = {
 };
 /** Besides, once a job is over. */
 const STALE_AFTER_JOB: readonly About[] = ["counts", "models", "orders", "shape"];
-/** Besides, once one of these is, which place shapes on the map: reading it takes long. */
-const MAP_JOBS: readonly unknown[] = ["select", "preprocess"];
 
 /** Whether an event only says how far a job is: they come often, and nobody needs each of them at once. */
 export function isProgress({ kind, payload }: ServiceEvent): boolean {
@@ -37,7 +35,5 @@ export function isKeptInPlace({ queryKey, state }: Query): boolean {
 function staleAfter(event: ServiceEvent): readonly About[] {
   const { kind, payload } = event;
   const isOver = kind === "job" && ["done", "failed", "cancelled"].includes(String(payload.state));
-  if (!isOver) return STALE_AFTER[kind];
-  const ofMap: readonly About[] = MAP_JOBS.includes(payload.job_kind) ? ["map"] : [];
-  return [...STALE_AFTER.job, ...STALE_AFTER_JOB, ...ofMap];
+  return isOver ? [...STALE_AFTER.job, ...STALE_AFTER_JOB] : STALE_AFTER[kind];
 }
