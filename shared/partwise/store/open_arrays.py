@@ -13,6 +13,10 @@ from partwise.store.clock import utc_now
 from partwise.store.objects import LocalObjects, RemoteObjects, storing
 from partwise.store.zarr_store import ZarrArrayStore
 
+CONNECT_S, READ_S = 5.0, 15.0
+"""Seconds in which an object store must take a connection, and say something."""
+ATTEMPTS = 2
+
 
 def open_array_store(
     url: str, options: Mapping[str, Any] | None = None, clock: Callable[[], datetime] = utc_now
@@ -36,10 +40,12 @@ def open_array_store(
         raise ConfigError(f"a store URL must be a folder or an fsspec URL but is {url!r}: {error}") from error
     except ImportError as error:
         raise StoreError(f"{protocol}:// needs a driver ({error}); install partwise[cloud]") from error
+    _try_seldom(file_system)
     objects = RemoteObjects(file_system, root, url)
     objects.folders("")
     with storing(url, "its top folder"):
         zarr_store = FsspecStore.from_url(url, storage_options=given, read_only=True)
+        _try_seldom(zarr_store.fs)
     return ZarrArrayStore(objects, zarr_store, url, clock)
 
 
@@ -53,10 +59,18 @@ def _local_store(root: Path, clock: Callable[[], datetime]) -> ZarrArrayStore:
 
 
 def _driver_options(protocol: str) -> dict[str, Any]:
-    """Seconds and attempts after which a store counts as unreachable, the drivers' own being minutes; and no checksums
-    of the driver's, which S3-compatible stores give for the whole object when a part was asked for: blocks have theirs.
+    """Seconds and attempts after which a store counts as unreachable: one that hangs is given up in about a minute. And
+    no checksums of the driver's, which S3-compatible stores give for the whole object when a part was asked for: blocks
+    have theirs.
     """
     if protocol != "s3":
         return {}
     checksums = dict.fromkeys(("request_checksum_calculation", "response_checksum_validation"), "when_required")
-    return {"config_kwargs": {"connect_timeout": 10, "retries": {"max_attempts": 3}, **checksums}}
+    patience = {"connect_timeout": CONNECT_S, "read_timeout": READ_S, "retries": {"total_max_attempts": ATTEMPTS}}
+    return {"config_kwargs": {**patience, **checksums}}
+
+
+def _try_seldom(file_system: Any) -> None:
+    """s3fs tries again what its driver has given up, which a body that breaks off needs: as often, not five times."""
+    if hasattr(file_system, "retries"):
+        file_system.retries = ATTEMPTS
