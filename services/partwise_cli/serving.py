@@ -4,6 +4,7 @@ import gc
 import logging
 import os
 import socket
+from collections.abc import Callable
 from functools import partial
 
 import uvicorn
@@ -14,6 +15,7 @@ from uvicorn.supervisors import Multiprocess
 from partwise.errors import StoreError
 from partwise_cli.logs import configure_logging
 from partwise_cli.parent_death import end_with_parent
+from partwise_cli.timely_heads import TimelyHeads
 from partwise_service.app import create_app
 from partwise_service.settings import ServiceSettings
 
@@ -31,9 +33,23 @@ def serve_on(settings: ServiceSettings, listener: socket.socket) -> None:
     KeyboardInterrupt : the end by SIGINT, where it is one process.
     """
     own_id = os.getpid() if settings.processes > 1 else None
-    config = uvicorn.Config(
-        partial(_app, settings, own_id),
+    config = server_config(settings, partial(_app, settings, own_id))
+    if own_id is None:
+        uvicorn.Server(config).run(sockets=[listener])
+        return
+    supervisor = Multiprocess(config, sockets=[listener])
+    supervisor.run()
+    if any(process.exitcode == STARTUP_FAILURE for process in supervisor.processes):
+        raise StoreError("each process of the service must be able to begin but one is not; its log above says why")
+
+
+def server_config(settings: ServiceSettings, make_app: Callable[[], FastAPI]) -> uvicorn.Config:
+    """How the application is served, which each process makes for itself."""
+    return uvicorn.Config(
+        make_app,
         factory=True,
+        http=partial(TimelyHeads, head_s=settings.request_idle_s),  # type: ignore[arg-type] # it is called as the class is
+        limit_concurrency=settings.max_connections,
         workers=settings.processes,
         log_config=None,
         log_level=logging.WARNING,
@@ -44,13 +60,6 @@ def serve_on(settings: ServiceSettings, listener: socket.socket) -> None:
         timeout_graceful_shutdown=STOP_S,
         timeout_worker_healthcheck=SILENT_S,
     )
-    if own_id is None:
-        uvicorn.Server(config).run(sockets=[listener])
-        return
-    supervisor = Multiprocess(config, sockets=[listener])
-    supervisor.run()
-    if any(process.exitcode == STARTUP_FAILURE for process in supervisor.processes):
-        raise StoreError("each process of the service must be able to begin but one is not; its log above says why")
 
 
 def _app(settings: ServiceSettings, parent_id: int | None) -> FastAPI:

@@ -13,7 +13,6 @@ from starlette.middleware.cors import CORSMiddleware
 
 from partwise import __version__
 from partwise.workspace.workspace import open_workspace
-from partwise_service.array_places import limit_array_places
 from partwise_service.compression import CompressionMiddleware
 from partwise_service.event_hub import EventHub
 from partwise_service.maps import EmbeddingMaps
@@ -46,7 +45,13 @@ from partwise_service.routes import (
 )
 from partwise_service.schemas.operations import OpsOut
 from partwise_service.security.at_once import AtOnce
-from partwise_service.security.middleware import API, BodyLimitMiddleware, FaultMiddleware, HeadersMiddleware
+from partwise_service.security.middleware import (
+    API,
+    BodyLimitMiddleware,
+    BodyTimeMiddleware,
+    FaultMiddleware,
+    HeadersMiddleware,
+)
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
 from partwise_service.service import Service
@@ -79,7 +84,7 @@ ROUTERS: Sequence[APIRouter] = (
 """Every resource of the API. A route file is served once its router is in here. What people at work ask for all the
 time comes first: a request is compared with one route after another until one fits."""
 UPLOAD_PATH = re.compile(rf"{API_V1}/collections/[0-9]+/uploads")
-"""Paths whose requests may be as large as `max_upload_bytes`."""
+"""Paths whose requests may be as large as `max_upload_bytes`, and take as long as that takes."""
 OPS_S = 10.0
 """Seconds for which figures of operation are kept: some are counted over all shapes."""
 MAX_REPLAYS = 4
@@ -97,7 +102,6 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         current_default_thread_limiter().total_tokens = settings.threads
-        limit_array_places(settings.threads)
         async with AsyncExitStack() as resources:
             workspace = resources.enter_context(open_workspace(settings.workspace))
             limiter = FailureLimiter(settings.share(settings.max_auth_failures), settings.auth_window_s, clock)
@@ -152,6 +156,7 @@ def _add_middleware(app: FastAPI, settings: ServiceSettings) -> None:
     """From the innermost to the outermost."""
     app.add_middleware(CompressionMiddleware)
     app.add_middleware(BodyLimitMiddleware, settings.max_body_bytes, settings.max_upload_bytes, UPLOAD_PATH)
+    app.add_middleware(BodyTimeMiddleware, settings.request_idle_s, settings.request_total_s, UPLOAD_PATH)
     app.add_middleware(FaultMiddleware)
     if settings.cors_origins:
         app.add_middleware(

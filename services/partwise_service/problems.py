@@ -46,6 +46,7 @@ class ProblemKind(Enum):
     FOREIGN_ORIGIN = ("foreign-origin", 403, "Pages of this origin may not do this")
     NOT_FOUND = ("not-found", 404, "There is no such thing")
     METHOD = ("method-not-allowed", 405, "This path does not take this method")
+    TOO_SLOW = ("too-slow", 408, "The request took too long to come")
     CONFLICT = ("conflict", 409, "This contradicts what is committed")
     TOO_LARGE = ("too-large", 413, "The request's body is too large")
     MEDIA = ("unsupported-media-type", 415, "The request's body has the wrong type")
@@ -122,6 +123,7 @@ _BY_STATUS = {
     403: ProblemKind.FORBIDDEN,
     404: ProblemKind.NOT_FOUND,
     405: ProblemKind.METHOD,
+    408: ProblemKind.TOO_SLOW,
     413: ProblemKind.TOO_LARGE,
     415: ProblemKind.MEDIA,
     429: ProblemKind.TOO_MANY,

@@ -28,6 +28,9 @@ class ServiceSettings(BaseModel):
     trusted_proxies : addresses whose X-Forwarded-For and -Proto are believed.
     session_h : hours after which a browser must log in again. login_code_s : seconds for which a login code is good.
     max_body_bytes, max_upload_bytes : of a request's body, and of one to a path that takes files.
+    request_idle_s : seconds of silence after which a request that has not come as a whole is given up.
+    request_total_s : seconds that the body of one may take, but for one that takes files.
+    max_connections : of each process; further ones are told to come back. A page has one for events and a few more.
     processes : that serve on the one port. Each has its share of `max_auth_failures` and `tool_processes`, at least 1.
     max_auth_failures : that one address, or one token's beginning, may make in `auth_window_s` seconds.
     threads : handlers that run at once; each may hold a connection to the database.
@@ -55,6 +58,9 @@ class ServiceSettings(BaseModel):
     login_code_s: float = Field(600.0, gt=0, le=3600)
     max_body_bytes: int = Field(4 * MEBIBYTE, ge=1024)
     max_upload_bytes: int = Field(1024 * MEBIBYTE, ge=1024)
+    request_idle_s: float = Field(30.0, gt=0)
+    request_total_s: float = Field(120.0, gt=0)
+    max_connections: int = Field(2_000, ge=1)
     max_auth_failures: int = Field(20, ge=1)
     auth_window_s: float = Field(60.0, gt=0)
     threads: int = Field(12, ge=1, le=256)

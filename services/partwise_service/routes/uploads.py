@@ -8,7 +8,7 @@ from datetime import timedelta
 from functools import partial
 from typing import Annotated, Any
 
-from anyio import CancelScope, fail_after
+from anyio import CancelScope
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Path, Query, Request
 from starlette.requests import ClientDisconnect
@@ -32,8 +32,6 @@ from partwise_service.schemas.base import NO_NUL
 from partwise_service.schemas.jobs import JobOut
 from partwise_service.schemas.uploads import IngestRequest, PrefixesOut, UploadOut, UploadsOut
 
-IDLE_S = 60.0
-"""Seconds of silence after which an upload is given up."""
 MAX_NAME = 255
 router = APIRouter(route_class=AnswerRoute, tags=["ingest"])
 UploadName = Annotated[
@@ -118,7 +116,7 @@ def ingest(
         parameters = {"prefix": wish.prefix, "path": plain_relative(wish.path or "")}
     job = catalog.enqueue_job(collection.id, JobKind.INGEST, parameters)
     catalog.append_audit(caller.name, "enqueue", f"job {job.id}", {"kind": job.kind.value, **parameters})
-    return JobOut.of(job)
+    return JobOut.of(job, caller.role)
 
 
 async def _receive(request: Request, writer: UploadWriter) -> None:
@@ -126,8 +124,7 @@ async def _receive(request: Request, writer: UploadWriter) -> None:
     body, pending, n_bytes = request.stream(), bytearray(), 0
     try:
         while True:
-            with fail_after(IDLE_S):
-                piece = await anext(body, None)
+            piece = await anext(body, None)
             if piece is None:
                 break
             pending += piece
@@ -135,8 +132,6 @@ async def _receive(request: Request, writer: UploadWriter) -> None:
             if len(pending) >= CHUNK_BYTES:
                 await in_array_place(partial(writer.write, bytes(pending)))
                 pending.clear()
-    except TimeoutError as error:
-        raise ProblemError(ProblemKind.MALFORMED, f"Nothing came for {IDLE_S:g} seconds; send it again.") from error
     except ClientDisconnect as error:
         raise ProblemError(ProblemKind.MALFORMED, "The upload was broken off; send it again.") from error
     if not n_bytes:

@@ -1,7 +1,9 @@
 """ASGI middleware around every request: headers that browsers obey, faults as problem documents, limits on bodies."""
 
+import math
 import re
 
+from anyio import current_time, fail_after
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -23,6 +25,7 @@ _HEADERS = {
     "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
 }
 _YEAR_S = 31_536_000
+_TOO_SLOW = "A request's body must come in time but did not; send it again"
 
 
 class HeadersMiddleware:
@@ -119,6 +122,43 @@ class BodyLimitMiddleware:
         if not announced.isdigit():
             return problem_response(ProblemKind.MALFORMED, "Content-Length must be a number.")
         return problem_response(ProblemKind.TOO_LARGE, f"{_too_large(limit)}.", headers={"Connection": "close"})
+
+
+class BodyTimeMiddleware:
+    """Gives up bodies that do not come: they are read before anybody knows whose they are.
+
+    Parameters
+    ----------
+    idle_s : seconds of silence. total_s : seconds until the body is whole, but for requests whose whole path is like
+        `upload_path`, which read theirs once they know the caller.
+    """
+
+    def __init__(self, app: ASGIApp, idle_s: float, total_s: float, upload_path: re.Pattern[str]) -> None:
+        self._app = app
+        self._idle_s = idle_s
+        self._total_s = total_s
+        self._upload_path = upload_path
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        total_s = math.inf if self._upload_path.fullmatch(scope["path"]) else self._total_s
+        until, is_whole = current_time() + total_s, False
+
+        async def timely_receive() -> Message:
+            nonlocal is_whole
+            if is_whole:  # what comes now is that the client goes, whenever it likes
+                return await receive()
+            try:
+                with fail_after(min(self._idle_s, until - current_time())):
+                    message = await receive()
+            except TimeoutError as error:
+                raise HTTPException(408, _TOO_SLOW, {"Connection": "close"}) from error
+            is_whole = not message.get("more_body", False)
+            return message
+
+        await self._app(scope, timely_receive, send)
 
 
 def _too_large(limit: int) -> str:

@@ -1,6 +1,8 @@
 """A service on a workspace of three small shapes, made without Ray, and callers of every role."""
 
 import shutil
+import socket
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -9,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import uvicorn
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
@@ -22,6 +25,7 @@ from partwise.testing.postgres import (
     postgres_server,
     reused_database,
 )
+from partwise.testing.waiting import WITHIN_S, wait_until
 from partwise.testing.workspaces import (
     ingest,
     publish_evaluation,
@@ -31,6 +35,7 @@ from partwise.testing.workspaces import (
     save_model,
 )
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
+from partwise_cli.serving import server_config
 from partwise_service.app import create_app
 from partwise_service.settings import ServiceSettings
 
@@ -214,6 +219,20 @@ def client(app: FastAPI) -> Iterator[TestClient]:
     """Sends what it is told and no credentials of its own."""
     with TestClient(app, base_url=ORIGIN, raise_server_exceptions=False) as started:
         yield started
+
+
+@pytest.fixture
+def served(app: FastAPI, settings: ServiceSettings) -> Iterator[str]:
+    """The URL of the application on a port of its own, served as by the command."""
+    listener = socket.create_server(("127.0.0.1", 0))
+    server = uvicorn.Server(server_config(settings, lambda: app))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
+    thread.start()
+    wait_until(lambda: server.started)
+    yield f"http://127.0.0.1:{listener.getsockname()[1]}/api/v1"
+    server.should_exit = True
+    thread.join(WITHIN_S)
+    listener.close()
 
 
 @pytest.fixture

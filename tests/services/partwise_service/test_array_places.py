@@ -6,9 +6,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from anyio import fail_after
-from anyio.to_thread import run_sync
+from anyio.to_thread import current_default_thread_limiter, run_sync
 
-from partwise_service.array_places import in_array_place, in_array_places, limit_array_places
+from partwise_service.array_places import in_array_place, in_array_places
 from partwise_service.settings import ServiceSettings
 
 N_THREADS = 3
@@ -41,20 +41,19 @@ def settings(mugs) -> ServiceSettings:
     return ServiceSettings(workspace=mugs.path, threads=N_THREADS)
 
 
-def _paths(mugs, workspace, kind: str) -> str:
+def _path(mugs, workspace, kind: str) -> str:
     shape = workspace.catalog.shape(mugs.ids["a.off"])
     return {
         "mesh": f"/meshes/{shape.mesh_hash}?shape_id={shape.id}",
         "labels": f"/shapes/{shape.id}/labels?segmentation=predicted",
         "uncertainty": f"/shapes/{shape.id}/uncertainty",
-        "embedding": f"/collections/{mugs.collection_id}/embedding",
         "uploads": f"/collections/{mugs.collection_id}/uploads",
     }[kind]
 
 
-@pytest.mark.parametrize("kind", ["mesh", "labels", "uncertainty", "embedding", "uploads"])
+@pytest.mark.parametrize("kind", ["mesh", "labels", "uncertainty", "uploads"])
 def test_people_go_on_while_the_array_store_hangs(operator, annotator, workspace, mugs, monkeypatch, kind) -> None:
-    path = _paths(mugs, workspace, kind)
+    path = _path(mugs, workspace, kind)
     annotator.get("/leases")
     store = HungStore(workspace.arrays, monkeypatch)
     with ThreadPoolExecutor(2 * N_THREADS + 1) as callers:
@@ -71,7 +70,7 @@ def test_people_go_on_while_the_array_store_hangs(operator, annotator, workspace
 
 def test_a_third_of_the_threads_is_left() -> None:
     async def calls() -> int:
-        limit_array_places(N_THREADS)
+        current_default_thread_limiter().total_tokens = N_THREADS
         n_begun, goes_on = threading.Semaphore(0), threading.Event()
 
         def hang() -> None:
@@ -91,7 +90,7 @@ def test_a_third_of_the_threads_is_left() -> None:
 
 def test_a_place_is_held_no_longer_than_a_piece_takes() -> None:
     async def calls() -> list[bytes]:
-        limit_array_places(1)
+        current_default_thread_limiter().total_tokens = 1
         got = []
         with fail_after(WITHIN_S):
             async for piece in in_array_places(iter([b"a", b"", b"c"])):

@@ -1,47 +1,21 @@
 """Tools through a real server: a client that hangs up takes its call out of the line."""
 
-import socket
 import threading
-import time
-from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import httpx
 import pytest
-import uvicorn
 
 from partwise.store.records import NewToken, Role
+from partwise.testing.waiting import WITHIN_S, wait_until
 from partwise_service.settings import ServiceSettings
 from partwise_service.tool_pool import answer_calls
-
-START_S = 60.0
 
 
 @pytest.fixture
 def settings(mugs) -> ServiceSettings:
     return ServiceSettings(workspace=mugs.path, tool_processes=1)
-
-
-@pytest.fixture
-def served(app) -> Iterator[str]:
-    """The URL of the application on a port of its own."""
-    listener = socket.create_server(("127.0.0.1", 0))
-    server = uvicorn.Server(uvicorn.Config(app, log_level="error", lifespan="on"))
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-    thread.start()
-    _wait(lambda: server.started)
-    yield f"http://127.0.0.1:{listener.getsockname()[1]}/api/v1"
-    server.should_exit = True
-    thread.join(START_S)
-    listener.close()
-
-
-def _wait(is_so) -> None:
-    until = time.monotonic() + START_S
-    while not is_so():
-        assert time.monotonic() < until, "it never came to be"
-        threading.Event().wait(0.005)
 
 
 def test_a_client_that_hangs_up_takes_its_call_out_of_the_line(served, app, mugs) -> None:
@@ -50,12 +24,12 @@ def test_a_client_that_hangs_up_takes_its_call_out_of_the_line(served, app, mugs
     headers = _headers(catalog)
     path, body = f"/shapes/{mugs.ids['b.off']}/patches", {"n_patches": 5, "method": "k_means"}
     process = tools._idle.popleft()  # busy with something that takes long
-    with httpx.Client(base_url=served, headers=headers, timeout=START_S) as client:
+    with httpx.Client(base_url=served, headers=headers, timeout=WITHIN_S) as client:
         impatient = threading.Thread(target=_given_up, args=(served, headers, path, body))
         impatient.start()
-        _wait(lambda: tools.n_waiting == 1)
-        impatient.join(START_S)
-        _wait(lambda: tools.n_waiting == 0)
+        wait_until(lambda: tools.n_waiting == 1)
+        impatient.join(WITHIN_S)
+        wait_until(lambda: tools.n_waiting == 0)
         tools._idle.append(process)
         answer = client.post(path, json=body)
     assert (answer.status_code, answer.json()["n_faces"]) == (200, mugs.meshes["b.off"].n_faces)
@@ -71,9 +45,9 @@ def test_a_client_that_hangs_up_ends_its_call_that_runs(served, app, mugs) -> No
     headers = _headers(catalog)
     path, body = f"/shapes/{mugs.ids['b.off']}/patches", {"n_patches": 5, "method": "k_means"}
     _given_up(served, headers, path, body)
-    _wait(lambda: tools.n_idle == 1)
+    wait_until(lambda: tools.n_idle == 1)
     process._answering = answer_calls
-    with httpx.Client(base_url=served, headers=headers, timeout=START_S) as client:
+    with httpx.Client(base_url=served, headers=headers, timeout=WITHIN_S) as client:
         assert client.post(path, json=body).status_code == 200
 
 

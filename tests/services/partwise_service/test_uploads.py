@@ -119,9 +119,14 @@ class TestLimits:
         assert _answered(app, operator, mugs, messages) == 400
         assert workspace.arrays.list("uploads") == []
 
-    def test_one_that_falls_silent_is_given_up(self, app, operator, mugs, workspace, monkeypatch) -> None:
-        monkeypatch.setattr("partwise_service.routes.uploads.IDLE_S", 0.0)
-        assert _answered(app, operator, mugs, [{"type": "http.request", "body": MESH, "more_body": True}]) == 400
+
+class TestSlowly:
+    @pytest.fixture
+    def settings(self, mugs) -> ServiceSettings:
+        return ServiceSettings(workspace=mugs.path, request_idle_s=0.01)
+
+    def test_an_upload_that_falls_silent_is_given_up(self, app, operator, mugs, workspace) -> None:
+        assert _answered(app, operator, mugs, [{"type": "http.request", "body": MESH, "more_body": True}]) == 408
         assert workspace.arrays.list("uploads") == []
 
 
