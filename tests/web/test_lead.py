@@ -6,6 +6,7 @@ from typing import Any
 
 from playwright.sync_api import Locator, Page, expect
 
+from partwise.store.records import JobState
 from partwise.workspace.settings import change_settings
 from partwise.workspace.workspace import open_workspace
 
@@ -67,6 +68,9 @@ def test_many_shapes_are_accepted_and_blind_checks_tell_how_many_were_wrong(ente
     expect(lead.get_by_text("4 shapes accepted, 2 others queued for a blind check")).to_be_visible()
     rows = recorded(lead, f"{COLLECTION}/shapes")["items"]
     assert sum(row["author_name"] == "lena" and row["state"] == "confirmed" for row in rows) == 4
+    expect(_tiles(lead)).to_have_count(2)  # those that wait for the check
+    _select_all(lead)
+    expect(lead.get_by_text("All of these were acted on already.")).to_be_visible()
 
     annotator = enter("ann", "annotator", "work")
     _confirm(annotator)  # as the model has it
@@ -152,6 +156,7 @@ def test_shapes_are_assigned_to_somebody_whose_queue_they_are(enter: Enter, reco
     _tiles(operator).nth(4).click()
     operator.get_by_role("button", name="Assign…").click()
     dialog = operator.get_by_role("dialog", name="Assign 1 shape")
+    expect(dialog.get_by_role("button", name="Assign")).to_be_disabled()  # nobody was chosen
     dialog.get_by_label("To").select_option("ann")
     dialog.get_by_role("button", name="Assign").click()
     expect(operator.get_by_text("1 waiting label is assigned")).to_be_visible()
@@ -188,6 +193,30 @@ def test_labels_that_wait_for_a_look_are_accepted_or_sent_back(service, enter: E
     [waiting] = recorded(lead, f"{COLLECTION}/reviews")["items"]
     assert (waiting["shape_id"], waiting["reason"]) == (_row(lead, recorded, rejected)["id"], "rework")
     assert waiting["detail"]["note"] == NOTE
+
+
+def test_whoever_comes_back_from_the_workbench_sees_what_they_did_there(enter: Enter) -> None:
+    page = enter("lena", "reviewer", "table")
+    ready = _tiles(page).and_(page.locator("[data-state=ready]")).first
+    name = ready.locator("p[title]").get_attribute("title")
+    ready.dblclick()
+    assert _confirm(page) == name
+    page.get_by_role("link", name="Table").click()
+    expect(_tiles(page).filter(has=page.get_by_title(str(name)))).to_have_attribute("data-state", "confirmed")
+
+
+def test_a_training_that_failed_says_why_to_whoever_asked_for_it(service, enter: Enter) -> None:
+    lead = enter("lena", "reviewer", "table")
+    line = lead.get_by_role("status", name="Model")
+    line.get_by_role("button", name="Train now").click()
+    expect(line).to_contain_text("Model 2 waits to be trained")
+    with open_workspace(service.workspace) as workspace:
+        job = workspace.catalog.claim_job("a worker")
+        assert job is not None
+        workspace.catalog.finish_job(job.id, "a worker", JobState.FAILED, message="the disk is full")
+    expect(line).to_contain_text("Model 2 could not be trained: the disk is full")
+    line.get_by_role("button", name="Try again").click()
+    expect(line).to_contain_text("Model 2 waits to be trained")
 
 
 def test_filters_and_order_are_in_the_address(enter: Enter, recorded: Recorded) -> None:

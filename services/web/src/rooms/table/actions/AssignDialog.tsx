@@ -40,7 +40,8 @@ export function AssignDialog({ collectionId, rows, onClose }: ShapeActionProps) 
         {personId === null
           ? "Whoever is next gets them from the queue."
           : "Nobody else gets them from the queue."}{" "}
-        Whose they are now is not kept. Shapes that do not wait in the queue are left as they are.
+        This takes the place of earlier assignments. Shapes that do not wait in the queue are left as they
+        are.
       </p>
     </ActionDialog>
   );

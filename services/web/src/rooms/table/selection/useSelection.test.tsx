@@ -1,5 +1,5 @@
 // @vitest-environment jsdom
-import { act, cleanup, renderHook } from "@testing-library/react";
+import { act, cleanup, renderHook, screen } from "@testing-library/react";
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { ToastProvider } from "../../../components";
 import type { ShapeRow } from "../rows/shapeRows";
@@ -132,6 +132,15 @@ describe("all", () => {
     await answer();
     expect(ids()).toEqual([3, 4, 5, 6, 7, 8]);
     expect(state().selection.nBeyond).toBe(0);
+  });
+
+  it("says so where none is left", async () => {
+    const { state, answer, ids } = selecting(READY);
+    act(() => state().setDone(ROWS.map((row) => row.id)));
+    act(() => state().all(ROWS.length));
+    await answer();
+    expect(ids()).toEqual([]);
+    expect(screen.getByText(/were acted on already/)).toBeTruthy();
   });
 
   it("of a list of any state are all of them", async () => {

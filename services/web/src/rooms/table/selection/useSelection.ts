@@ -19,6 +19,8 @@ import {
   toggle,
 } from "./selection";
 
+const NONE_LEFT = "All of these were acted on already. To act on some again, select them one by one.";
+
 export interface SelectionState {
   readonly selection: Selection;
   only(row: ShapeRow, place: number): void;
@@ -47,12 +49,20 @@ export function useSelection(list: RowList, reader: ListReader): SelectionState 
       setSelection(next);
     };
     /** Rows may have to be asked for; by then somebody may have chosen something else, and that stays. */
-    const read = <T>(found: Promise<T>, next: (held: Selection, found: T) => Selection) => {
+    const read = <T>(
+      found: Promise<T>,
+      next: (held: Selection, found: T) => Selection,
+      tell: (found: T) => void = () => undefined,
+    ) => {
       nChanges.current += 1;
       const asked = nChanges.current;
       const isWanted = () => nChanges.current === asked;
       found.then(
-        (rows) => isWanted() && change((held) => next(held, rows)),
+        (rows) => {
+          if (!isWanted()) return;
+          change((held) => next(held, rows));
+          tell(rows);
+        },
         (error: Error) => isWanted() && showToast({ message: error.message, tone: "bad" }),
       );
     };
@@ -86,8 +96,10 @@ export function useSelection(list: RowList, reader: ListReader): SelectionState 
       all: (nShapes: number) => {
         const isLeft = (row: ShapeRow) =>
           state === null || (row.state === state && !done.current.has(row.id));
-        read(reader.firstOf(MAX_CHOSEN, isLeft), (held, { rows, nPassed }) =>
-          chooseAll(held, rows, nShapes - nPassed),
+        read(
+          reader.firstOf(MAX_CHOSEN, isLeft),
+          (held, { rows, nPassed }) => chooseAll(held, rows, nShapes - nPassed),
+          ({ rows, nPassed }) => rows.length === 0 && nPassed > 0 && showToast({ message: NONE_LEFT }),
         );
       },
       move: (place: number) => change((held) => moveTo(held, place)),
@@ -95,7 +107,7 @@ export function useSelection(list: RowList, reader: ListReader): SelectionState 
       take: (rows: Promise<readonly ShapeRow[]>, isAdding: boolean, nMore: number) =>
         read(rows, (held, found) => chooseRange(held, found, { cursor: held.cursor, isAdding, nMore })),
     }),
-    [anchor, state, reader, change, read],
+    [anchor, state, reader, change, read, showToast],
   );
   const refresh = useCallback(
     (rows: Iterable<ShapeRow>) => setSelection((held) => refreshed(held, rows)),
