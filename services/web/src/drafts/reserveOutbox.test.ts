@@ -78,6 +78,13 @@ describe("a device without room", () => {
     expect([await outbox.asides(), outbox.isEmpty]).toEqual([[], true]);
   });
 
+  it("is given versions that were set aside once it has room again", async () => {
+    await outbox.setAside(aside());
+    vi.restoreAllMocks();
+    await outbox.storeAgain();
+    expect([outbox.isEmpty, await outbox.asides()]).toEqual([true, [{ ...aside(), id: 1 }]]);
+  });
+
   it("keeps nobody from settling a conflict", async () => {
     const one = await inConflict();
     await one.takeTheirs();
@@ -108,6 +115,14 @@ describe("a device without room", () => {
 
 describe("a device that does not answer", () => {
   beforeEach(() => breakDevice(NEVER));
+
+  it("is given a version once, however often it is asked to take it", async () => {
+    const setting = outbox.setAside(aside());
+    await clock.advance(DEVICE_PATIENCE_MS);
+    await setting;
+    await outbox.storeAgain();
+    expect(device.setAside).toHaveBeenCalledOnce();
+  });
 
   it("does not keep strokes from being sent", async () => {
     const opening = opened();

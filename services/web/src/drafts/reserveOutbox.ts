@@ -19,7 +19,9 @@ export class ReserveOutbox implements Outbox {
   readonly asidesChanged = new Observable(0);
   /** By the stroke's id. */
   private readonly held = new Map<string, Held>();
-  private readonly heldAside = new Map<number, KeptAside>();
+  /** By ids that the device does not give. */
+  private readonly heldAside = new Map<number, SetAside>();
+  private readonly storingAside = new Set<number>();
   private lastId = 0;
 
   constructor(
@@ -66,15 +68,20 @@ export class ReserveOutbox implements Outbox {
   async setAside(aside: SetAside): Promise<void> {
     const id = --this.lastId;
     this.drop(aside.strokes);
-    this.heldAside.set(id, { ...aside, id });
-    const kept = this.device.setAside(aside).then(() => this.heldAside.delete(id));
-    await this.inTime(kept).catch(() => {}); // it stays in memory, then
-    this.tellAsides();
+    this.heldAside.set(id, aside);
+    await this.storeAside(id, aside);
+  }
+
+  /** The device may have room again: gives it the versions that only memory has. */
+  async storeAgain(): Promise<void> {
+    for (const [id, aside] of [...this.heldAside]) {
+      if (!this.storingAside.has(id)) await this.storeAside(id, aside);
+    }
   }
 
   async asides(): Promise<KeptAside[]> {
     const kept = await this.inTime(this.device.asides()).catch(() => []);
-    return [...kept, ...this.heldAside.values()];
+    return [...kept, ...[...this.heldAside].map(([id, aside]) => ({ ...aside, id }))];
   }
 
   async forgetAside(id: number): Promise<void> {
@@ -98,6 +105,16 @@ export class ReserveOutbox implements Outbox {
 
   private stored(storing: Promise<void>, strokes: readonly StrokeJson[]): Promise<void> {
     return this.inTime(storing.then(() => this.drop(strokes)));
+  }
+
+  private async storeAside(id: number, aside: SetAside): Promise<void> {
+    this.storingAside.add(id);
+    const kept = this.device
+      .setAside(aside)
+      .then(() => this.heldAside.delete(id))
+      .finally(() => this.storingAside.delete(id));
+    await this.inTime(kept).catch(() => {}); // it stays in memory, then
+    this.tellAsides();
   }
 
   private tellAsides(): void {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { ServiceEvent } from "../../../api/events";
-import { endedFor } from "./useDesk";
+import { endedFor, warningOf } from "./useDesk";
 
 const told = (payload: ServiceEvent["payload"], kind: ServiceEvent["kind"] = "queue"): ServiceEvent => ({
   kind,
@@ -21,4 +21,12 @@ describe("an event", () => {
   });
   it("tells nothing if it is about something else", () =>
     expect(endedFor(2, told({ shape_id: 7, person_id: 2, what: "cleared" }, "people"))).toBeNull());
+});
+
+describe("closing the page", () => {
+  it.each([true, false])("is asked about only while the page alone has strokes (else: %s)", (isEmpty) => {
+    const closing = new Event("beforeunload", { cancelable: true });
+    warningOf({ isEmpty })(closing);
+    expect(closing.defaultPrevented).toBe(!isEmpty);
+  });
 });

@@ -25,6 +25,8 @@ export interface OpenedDesk {
 /** One for the page's life: what the device does not keep is still there when its person comes back to the room. */
 const outbox = new ReserveOutbox(new IndexedDbOutbox(), systemClock);
 
+const warnOfLoss = warningOf(outbox);
+
 const PARTS: SessionParts = {
   transport: httpTransport,
   outbox,
@@ -52,6 +54,7 @@ export function useDesk(
     const leftovers = new Leftovers(PARTS, personId, (draft) => desk.isAtWork(draft));
     const wake = () => {
       desk.wake();
+      void outbox.storeAgain();
       void leftovers.send();
     };
     const ids = wanted === "" ? [] : wanted.split(",").map(Number);
@@ -90,8 +93,10 @@ export function endedFor(personId: number, { kind, payload }: ServiceEvent): num
 }
 
 /** The browser asks before it closes a page that alone has strokes. */
-function warnOfLoss(event: BeforeUnloadEvent): void {
-  if (!outbox.isEmpty) event.preventDefault();
+export function warningOf(kept: Pick<ReserveOutbox, "isEmpty">): (event: Event) => void {
+  return (event) => {
+    if (!kept.isEmpty) event.preventDefault();
+  };
 }
 
 function wakeWith(wake: () => void): () => void {
