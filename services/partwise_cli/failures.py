@@ -4,7 +4,7 @@ import errno
 import sys
 from dataclasses import dataclass
 
-from partwise.errors import PartwiseError, StoreError, WorkerError
+from partwise.errors import ConfigError, PartwiseError, StoreError, WorkerError
 
 SOME_FAILED = 1
 """The command is done but some shapes or files failed."""
@@ -20,11 +20,16 @@ EXIT_CODES = (
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a command that failed ends. `is_fault` : nobody foresaw it, so that its traceback is worth showing."""
+    """How a command that failed ends.
+
+    is_fault : nobody foresaw it, so that its traceback is worth showing.
+    is_domain : what was asked for cannot be done; the message is for whoever asked, and names no place on a machine.
+    """
 
     code: int
     message: str
     is_fault: bool = False
+    is_domain: bool = False
 
 
 def ending_of(error: Exception) -> Ending:
@@ -33,7 +38,9 @@ def ending_of(error: Exception) -> Ending:
     if isinstance(cause, Exception):
         error = cause
     if isinstance(error, PartwiseError):
-        return Ending(STORE_ERROR if isinstance(error, StoreError | WorkerError) else INPUT_ERROR, str(error))
+        is_of_a_machine = isinstance(error, StoreError | WorkerError)
+        is_domain = not (is_of_a_machine or isinstance(error, ConfigError))
+        return Ending(STORE_ERROR if is_of_a_machine else INPUT_ERROR, str(error), is_domain=is_domain)
     if isinstance(error, OSError):
         return Ending(STORE_ERROR, _of_the_system(error))
     if isinstance(error, MemoryError):

@@ -89,5 +89,5 @@ def _kinds(text: str) -> "list[JobKind]":
 
 
 def _tell(job: "Job") -> None:
-    message = f": {job.progress.message}" if job.progress.message else ""
+    message = f": {job.full_message}" if job.full_message else ""
     typer.echo(f"job {job.id}, {job.kind} of collection {job.collection_id}: {job.state}{message}", err=True)

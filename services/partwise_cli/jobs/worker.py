@@ -9,8 +9,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from datetime import timedelta
 
 from partwise.errors import ConflictError, NotFoundError, PartwiseError, StoreError, WorkerError
+from partwise.store.records import WHY, Job, JobKind, JobState
 from partwise.store.records import Collection as ShapeCollection
-from partwise.store.records import Job, JobKind, JobState
 from partwise.workspace.workspace import Workspace
 from partwise_cli.failures import ending_of, is_of_ray
 from partwise_cli.jobs.cluster import Cluster
@@ -23,6 +23,9 @@ logger = logging.getLogger(__name__)
 
 BACKOFF = 5
 """Times as long is waited after each attempt at a job that failed for reasons outside of it."""
+
+NAMES_FILES = frozenset({JobKind.INGEST, JobKind.EXPORT})
+"""Jobs of operators, whose errors name files that others need not know of."""
 
 STOPPED = "its worker was stopped; it will be begun again"
 
@@ -137,6 +140,9 @@ class Worker:
     def _fail(self, job: Job, error: Exception) -> None:
         """Puts on record why a job cannot go on; one that may fare better later goes back."""
         ending = ending_of(error)
+        is_for_all = ending.is_domain and job.kind not in NAMES_FILES
+        message = ending.message if is_for_all else f"{job.kind} could not be done; an operator can see why"
+        result = None if is_for_all else {WHY: ending.message}
         is_passing = isinstance(error, StoreError | WorkerError | OSError) or is_of_ray(error)
         if ending.is_fault:
             logger.error("job %d: a fault", job.id, exc_info=error)
@@ -144,11 +150,11 @@ class Worker:
             self._cluster.close()  # the next job gets another
         try:
             if is_passing:
-                returned = self._catalog.return_job(job.id, self.owner, ending.message)
+                returned = self._catalog.return_job(job.id, self.owner, message, result=result)
                 if not returned.is_over:  # what is in the way may take a while to go
                     self._never.wait(self._workspace.config.jobs.poll_s * BACKOFF**job.attempts)
             else:
-                self._catalog.finish_job(job.id, self.owner, JobState.FAILED, message=ending.message)
+                self._catalog.finish_job(job.id, self.owner, JobState.FAILED, message=message, result=result)
         except ConflictError as late:
             logger.warning("job %d is left alone: %s", job.id, late)
         except StoreError as gone:

@@ -44,4 +44,4 @@ def retry_failures(caller: Operator, collection: ScopedCollection, catalog: Cata
         return Retried(n_retried=0, job=None)
     job = catalog.enqueue_job(collection.id, JOB_OF_STAGE.get(which.stage or "", JobKind.PREPROCESS))
     catalog.append_audit(caller.name, "retry failures", f"collection {collection.id}", {"n_retried": n_retried})
-    return Retried(n_retried=n_retried, job=JobOut.of(job))
+    return Retried(n_retried=n_retried, job=JobOut.of(job, caller.role))

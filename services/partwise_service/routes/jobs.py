@@ -41,6 +41,7 @@ def require_job_role(caller: Identity, kind: JobKind) -> None:
 
 @router.get("/collections/{collection_id}/jobs")
 def list_jobs(
+    caller: Caller,
     collection: ScopedCollection,
     catalog: CatalogDep,
     before: Before = None,
@@ -49,7 +50,9 @@ def list_jobs(
 ) -> JobsPage:
     """A page of the collection's jobs, newest first."""
     jobs = catalog.jobs(collection.id, before=before, limit=limit, state=state)
-    return JobsPage(items=[JobOut.of(job) for job in jobs], next=str(jobs[-1].id) if len(jobs) == limit else None)
+    return JobsPage(
+        items=[JobOut.of(job, caller.role) for job in jobs], next=str(jobs[-1].id) if len(jobs) == limit else None
+    )
 
 
 @router.post("/collections/{collection_id}/jobs", status_code=201)
@@ -63,13 +66,13 @@ def enqueue_job(
     require_job_role(caller, new.kind)
     job = catalog.enqueue_job(collection.id, new.kind, new.parameters.model_dump(mode="json"))
     catalog.append_audit(caller.name, "enqueue", f"job {job.id}", {"kind": job.kind.value})
-    return JobOut.of(job)
+    return JobOut.of(job, caller.role)
 
 
 @router.get("/jobs/{job_id}")
-def show_job(job: ScopedJob) -> JobOut:
+def show_job(caller: Caller, job: ScopedJob) -> JobOut:
     """One job."""
-    return JobOut.of(job)
+    return JobOut.of(job, caller.role)
 
 
 @router.post("/jobs/{job_id}/cancel")
@@ -78,7 +81,7 @@ def cancel_job(caller: Caller, job: ScopedJob, catalog: CatalogDep) -> JobOut:
     require_job_role(caller, job.kind)
     cancelled = catalog.cancel_job(job.id)
     catalog.append_audit(caller.name, "cancel", f"job {job.id}", {"kind": job.kind.value})
-    return JobOut.of(cancelled)
+    return JobOut.of(cancelled, caller.role)
 
 
 @router.post("/jobs/{job_id}/retry", status_code=201)
@@ -87,4 +90,4 @@ def retry_job(caller: Caller, job: ScopedJob, catalog: CatalogDep) -> JobOut:
     require_job_role(caller, job.kind)
     again = catalog.retry_job(job.id)
     catalog.append_audit(caller.name, "retry", f"job {job.id}", {"kind": job.kind.value, "job_id": again.id})
-    return JobOut.of(again)
+    return JobOut.of(again, caller.role)

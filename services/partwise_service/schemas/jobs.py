@@ -1,11 +1,12 @@
 """Jobs: what is asked for, and how far it is."""
 
+from dataclasses import replace
 from datetime import datetime
 from typing import Literal
 
 from pydantic import JsonValue
 
-from partwise.store.records import Job, JobKind, JobState
+from partwise.store.records import Job, JobKind, JobState, Role
 from partwise_service.schemas.base import Answer, Request
 
 Kind = Literal[JobKind.PREPROCESS, JobKind.TRAIN, JobKind.EVALUATE, JobKind.REFINE, JobKind.SELECT]
@@ -35,6 +36,7 @@ class JobOut(Answer):
     """A job. attempts : how often it was begun. message : how it stands, or why it ended as it did.
 
     cancel_requested : it is asked to stop, and will between two shapes. result : small figures, once it is done.
+    Operators alone are told parameters, result, and a message that names files or places on machines.
     """
 
     id: int
@@ -53,9 +55,13 @@ class JobOut(Answer):
     result: dict[str, JsonValue] | None
 
     @classmethod
-    def of(cls, job: Job) -> "JobOut":
-        """The job as it is told: not which process works on it."""
+    def of(cls, job: Job, role: Role) -> "JobOut":
+        """The job as it is told to callers of a role: not which process works on it."""
         about = job.progress
+        if role.includes(Role.OPERATOR):
+            about = replace(about, message=job.full_message)
+        else:
+            job = replace(job, parameters={}, result=None)
         progress = JobProgress(done=about.n_done, failed=about.n_failed, total=about.n_total, message=about.message)
         same = {name: getattr(job, name) for name in cls.model_fields if name not in ("progress", "message")}
         return cls(**same, progress=progress, message=about.message)

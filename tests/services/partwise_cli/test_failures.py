@@ -14,11 +14,16 @@ from partwise_cli.failures import FAULT, INPUT_ERROR, STORE_ERROR, Ending, endin
     "kind",
     [
         errors.MeshError, errors.DegenerateMeshError, errors.FileFormatError, errors.LabelError, errors.ParameterError,
-        errors.ConfigError, errors.NotFoundError, errors.ConflictError, errors.NotEnoughDataError,
+        errors.NotFoundError, errors.ConflictError, errors.NotEnoughDataError,
     ],
 )  # fmt: skip
-def test_wrong_input_ends_with_its_message(kind: type[Exception]) -> None:
-    assert ending_of(kind("a must be b but is c; do d")) == Ending(INPUT_ERROR, "a must be b but is c; do d")
+def test_wrong_input_ends_with_its_message_which_is_for_whoever_gave_it(kind: type[Exception]) -> None:
+    message = "a must be b but is c; do d"
+    assert ending_of(kind(message)) == Ending(INPUT_ERROR, message, is_domain=True)
+
+
+def test_what_is_wrong_with_the_configuration_is_for_whoever_wrote_it() -> None:
+    assert ending_of(errors.ConfigError("/data is no folder")) == Ending(INPUT_ERROR, "/data is no folder")
 
 
 def test_a_store_out_of_reach_ends_with_a_code_of_its_own() -> None:

@@ -63,6 +63,20 @@ def test_how_far_a_job_is(annotator, workspace, running) -> None:
     assert "w1" not in str(shown)
 
 
+def test_what_names_files_and_places_is_for_operators(annotator, reviewer, operator, workspace, mugs) -> None:
+    job = workspace.catalog.enqueue_job(mugs.collection_id, JobKind.INGEST, {"prefix": "scans", "path": "secret"})
+    workspace.catalog.claim_job("w1")
+    why = {"why": "s3://bucket cannot be reached"}
+    workspace.catalog.finish_job(job.id, "w1", JobState.FAILED, message="ingest could not be done", result=why)
+    for caller in (annotator, reviewer):
+        for shown in (caller.get(f"/jobs/{job.id}").json(), *caller.get(_of(mugs)).json()["items"]):
+            assert (shown["parameters"], shown["result"]) == ({}, None)
+            assert shown["message"] == shown["progress"]["message"] == "ingest could not be done"
+    shown = operator.get(f"/jobs/{job.id}").json()
+    assert (shown["parameters"], shown["result"]) == ({"prefix": "scans", "path": "secret"}, why)
+    assert shown["message"] == shown["progress"]["message"] == why["why"]
+
+
 def test_a_waiting_job_is_cancelled_at_once(reviewer, mugs) -> None:
     job = reviewer.post(_of(mugs), json={"kind": "train"}).json()
     assert reviewer.post(f"/jobs/{job['id']}/cancel").json()["state"] == "cancelled"

@@ -66,9 +66,12 @@ class JobCatalog(Protocol):
         """
         ...
 
-    def return_job(self, job_id: int, owner: str, message: str, *, max_attempts: int = 3) -> Job:
+    def return_job(
+        self, job_id: int, owner: str, message: str, *, result: Mapping[str, Any] | None = None, max_attempts: int = 3
+    ) -> Job:
         """As `release_jobs` of one job that could not be done now: it counts, and fails if begun `max_attempts` times.
 
+        result : what is known of why, until it is begun again.
         Raises `ConflictError` as `heartbeat_job`.
         """
         ...

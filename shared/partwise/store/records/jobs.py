@@ -27,6 +27,10 @@ BACKGROUND_KINDS = (JobKind.PREPROCESS, JobKind.EVALUATE, JobKind.REFINE)
 """Kinds that may take days, shape by shape: begun after all others, and stopped between two shapes for them."""
 
 
+WHY = "why"
+"""In the result of a job that could not be done: the reason, where it is for operators only."""
+
+
 class JobState(StrEnum):
     """Where a job stands; the last three are final."""
 
@@ -49,7 +53,8 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A job on record. `parameters` and `result` are small JSON.
+    """A job on record. `parameters` and `result` are small JSON, which may name files and places on machines.
+    `progress` does not, as all who may see the collection read it.
 
     owner : the process that works on it, or did last. `heartbeat_at` is when it last said so.
     attempts : how often it was begun.
@@ -70,6 +75,11 @@ class Job:
     started_at: datetime | None
     heartbeat_at: datetime | None
     finished_at: datetime | None
+
+    @property
+    def full_message(self) -> str:
+        """The message with the reason that only operators are told, if there is one."""
+        return str((self.result or {}).get(WHY, self.progress.message))
 
     @property
     def is_over(self) -> bool:

@@ -26,6 +26,7 @@ def claim_job(
         "started_at": now,
         "heartbeat_at": seconds_ago(0.0),
         "message": "",  # of the time before, if there was one
+        "result": None,  # likewise
     }
     if row.kind == JobKind.TRAIN:
         restart_count(connection, row.collection_id)

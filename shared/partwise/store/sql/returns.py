@@ -1,6 +1,6 @@
 """Jobs that go back to be begun again: their owner was lost, has to stop, or could not do them now."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import datetime, timedelta
 from typing import Any
 
@@ -31,10 +31,20 @@ def release_jobs(connection: Connection, owner: str, message: str, now: datetime
     return _all_back(connection, t.job.c.owner == owner, message, after_release, now)
 
 
-def return_job(connection: Connection, job_id: int, owner: str, message: str, max_attempts: int, now: datetime) -> Job:
+def return_job(
+    connection: Connection,
+    job_id: int,
+    owner: str,
+    message: str,
+    result: Mapping[str, Any] | None,
+    max_attempts: int,
+    now: datetime,
+) -> Job:
     known = own_running(connection, job_id, owner)
     is_last = known.attempts >= max_attempts
     values = _failed(message, now) if is_last else _pending(message)
+    if result is not None:
+        values["result"] = dict(result)
     returned = _back(connection, known, message, values, now)
     append_events(connection, [job_event(returned)], now)
     return returned

@@ -53,9 +53,11 @@ class SqlJobCatalog(SqlBase):
         with writing(self._engine) as connection:
             return returns.release_jobs(connection, owner, message, self._clock())
 
-    def return_job(self, job_id: int, owner: str, message: str, *, max_attempts: int = 3) -> r.Job:
+    def return_job(
+        self, job_id: int, owner: str, message: str, *, result: Mapping[str, Any] | None = None, max_attempts: int = 3
+    ) -> r.Job:
         with writing(self._engine) as connection:
-            return returns.return_job(connection, job_id, owner, message, max_attempts, self._clock())
+            return returns.return_job(connection, job_id, owner, message, result, max_attempts, self._clock())
 
     def cancel_job(self, job_id: int) -> r.Job:
         with writing(self._engine) as connection:

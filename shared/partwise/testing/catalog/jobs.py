@@ -193,9 +193,12 @@ class JobConformance:
     def test_a_job_that_cannot_be_done_now_fails_in_the_end(self, catalog: Catalog) -> None:
         job = _running(catalog)
         for attempt in (1, 2):
-            returned = catalog.return_job(job.id, "w1", "no room")
+            returned = catalog.return_job(job.id, "w1", "no room", result={"why": "/data is full"})
             assert (returned.state, returned.attempts) == (JobState.PENDING, attempt)
-            catalog.claim_job("w1")
+            assert (returned.progress.message, returned.full_message) == ("no room", "/data is full")
+            again = catalog.claim_job("w1")
+            assert again is not None
+            assert again.result is None
         failed = catalog.return_job(job.id, "w1", "no room")
         assert (failed.state, failed.progress.message, failed.is_over) == (JobState.FAILED, "no room", True)
         with raises(ConflictError, "its owner"):

@@ -76,7 +76,7 @@ def test_an_upload_becomes_shapes_that_wait_to_be_described(workspace, collectio
 
 def test_an_upload_of_which_nothing_can_be_taken_stays(workspace, collection_id, done) -> None:
     job = done(JobKind.INGEST, {"upload_id": uploaded(workspace, collection_id, {"a.off": b"no mesh"})})
-    assert (job.state, "new.zip" in job.progress.message) == (JobState.FAILED, True)
+    assert (job.state, "new.zip" in job.full_message) == (JobState.FAILED, True)
     assert len(uploads(workspace, collection_id)) == 1
 
 
@@ -173,7 +173,7 @@ def test_what_brings_nothing_new_asks_for_nothing(workspace, collection_id, done
 
 def test_an_upload_that_is_gone_fails_the_job(done) -> None:
     job = done(JobKind.INGEST, {"upload_id": f"20260101T000000Z-{'0' * 32}"})
-    assert (job.state, "send the file again" in job.progress.message) == (JobState.FAILED, True)
+    assert (job.state, "send the file again" in job.full_message) == (JobState.FAILED, True)
 
 
 class TestPrefixes:
@@ -199,7 +199,7 @@ class TestPrefixes:
         before = keys(workspace, collection_id)
         job = done(JobKind.INGEST, {"prefix": "scans", "path": path})
         assert job.state is JobState.FAILED
-        assert str(scans) not in job.progress.message
+        assert str(scans) not in job.full_message
         assert keys(workspace, collection_id) == before
 
     def test_a_worker_that_lists_no_prefix_takes_nothing(self, scans, monkeypatch, done) -> None:
@@ -223,4 +223,4 @@ def test_an_export_becomes_an_archive(workspace, collection_id, done) -> None:
 
 def test_an_export_of_labels_that_are_not_there_fails(done) -> None:
     job = done(JobKind.EXPORT, {"segmentation": "confirmed", "format": "seg", "on": "working"})
-    assert (job.state, "confirmed labels" in job.progress.message) == (JobState.FAILED, True)
+    assert (job.state, "confirmed labels" in job.full_message) == (JobState.FAILED, True)

@@ -6,7 +6,7 @@ from datetime import timedelta
 import pytest
 from sqlalchemy import update
 
-from partwise.errors import NotEnoughDataError, StoreError, WorkerError
+from partwise.errors import ConfigError, NotEnoughDataError, ParameterError, StoreError, WorkerError
 from partwise.store import tables as t
 from partwise.store.records import JobKind, JobState
 from partwise.store.sql.dialect import seconds_ago
@@ -121,7 +121,7 @@ def test_a_job_that_cannot_be_done_fails_with_the_reason_and_the_next_is_done(
     worker({JobKind.INGEST: raising(error), JobKind.EXPORT: done}).run(once=True)
     ended = workspace.catalog.job(failing.id)
     assert ended.state is JobState.FAILED
-    assert says in ended.progress.message
+    assert says in ended.full_message
     assert workspace.catalog.job(good.id).state is JobState.DONE
 
 
@@ -130,7 +130,37 @@ def test_what_may_pass_is_tried_three_times(worker, workspace, enqueue, error) -
     job = enqueue(JobKind.EXPORT)
     worker({JobKind.EXPORT: raising(error)}).run(once=True)
     ended = workspace.catalog.job(job.id)
-    assert (ended.state, ended.attempts, ended.progress.message) == (JobState.FAILED, 3, str(error))
+    assert (ended.state, ended.attempts, ended.full_message) == (JobState.FAILED, 3, str(error))
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        StoreError("s3://bucket cannot be reached"),
+        WorkerError("Ray of s3://bucket died"),
+        ConfigError("s3://bucket is no folder"),
+        OSError(28, "No space left", "s3://bucket"),
+        KeyError("s3://bucket"),
+    ],
+)
+def test_what_names_places_on_machines_is_for_operators(worker, workspace, enqueue, error) -> None:
+    job = enqueue(JobKind.TRAIN)
+    worker({JobKind.TRAIN: raising(error)}).run(once=True)
+    ended = workspace.catalog.job(job.id)
+    assert "s3://bucket" in ended.full_message
+    assert ended.progress.message == "train could not be done; an operator can see why"
+    assert "bucket" not in str(workspace.catalog.events(after=0))
+
+
+@pytest.mark.parametrize(("kind", "is_told"), [(JobKind.TRAIN, True), (JobKind.INGEST, False), (JobKind.EXPORT, False)])
+def test_what_is_wrong_with_what_was_asked_for_is_told_unless_it_names_files(
+    worker, workspace, enqueue, kind, is_told
+) -> None:
+    job = enqueue(kind)
+    worker({kind: raising(ParameterError("a.zip is empty"))}).run(once=True)
+    ended = workspace.catalog.job(job.id)
+    assert ended.full_message == "a.zip is empty"
+    assert (ended.progress.message == "a.zip is empty") == is_told
 
 
 def test_a_cancelled_job_stops_and_is_over(worker, workspace, enqueue) -> None:
