@@ -260,6 +260,30 @@ def test_a_stale_save_is_refused_and_put_on_top(two_versions) -> None:
     expect(home.page.get_by_text("You confirmed this shape elsewhere")).to_be_visible()
 
 
+def test_strokes_that_came_after_their_draft_was_closed_are_put_on_the_next_one(opened, log_in) -> None:
+    away = opened("zoe")
+    draft_id, lease = away.draft()["id"], away.lease()
+    away.page.context.set_offline(True)
+    paint(away, 0, 1)
+    expect(away.save_state).to_have_text("Offline: 2 queued")
+    home = log_in("zoe")
+    home.open(lease["shape_id"])
+    home.page.keyboard.press("Enter")
+    home.until(lambda: home.get(f"/drafts/{draft_id}")["outcome"] == "confirmed")
+
+    away.page.context.set_offline(False)
+    expect(away.page.get_by_text("You confirmed this shape elsewhere")).to_be_visible()
+    away.page.get_by_role("button", name="Go to the next shape").click()
+    expect(away.page.get_by_text("Strokes of other shapes are set aside")).to_be_visible()
+    away.page.get_by_role("button", name=f"Open {lease['source_key']}").click()
+    expect(away.page.get_by_text("2 strokes set aside")).to_be_visible()
+    away.page.get_by_role("button", name="Put on top").click()
+    expect(away.page.get_by_text("2 strokes set aside")).to_be_hidden()
+    assert away.draft()["id"] != draft_id
+    payloads = away.expect_recorded(away.draft()["id"], 2)
+    assert [payload["label"] for payload in payloads] == [0, 1]
+
+
 def test_labels_that_somebody_else_confirmed_meanwhile_are_looked_at_first(opened, log_in) -> None:
     bench = opened("xena")
     draft_id, lease = bench.draft()["id"], bench.lease()

@@ -55,7 +55,11 @@ export function StageNotices({ desk, held, open, confirming }: StageNoticesProps
         />
       )}
       {open !== null && (
-        <ShapeBanners {...{ held, open }} isLossTold={confirming.unseenRevision !== null} onLeave={leave} />
+        <ShapeBanners
+          {...{ desk, held, open }}
+          isLossTold={confirming.unseenRevision !== null}
+          onLeave={leave}
+        />
       )}
     </>
   );

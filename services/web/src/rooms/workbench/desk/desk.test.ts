@@ -145,6 +145,14 @@ describe("a desk", () => {
     expect(current(desk)).toBe(2);
   });
 
+  it("tells that a shape is off it once its draft is closed", async () => {
+    const desk = await started();
+    const closedThen: number[][] = [];
+    desk.onLeft = () => closedThen.push([...closed]);
+    await desk.leave(desk.state.get().current as HeldShape);
+    expect(closedThen).toEqual([[1]]);
+  });
+
   it("renews a shape no more once it is given back, though the next one is still on its way", async () => {
     const desk = await started();
     queue.isSlow = true;
@@ -164,6 +172,19 @@ describe("a desk", () => {
     const desk = await started([3, 7]);
     expect(current(desk)).toBe(3);
     expect(desk.state.get().refused).toEqual([{ shape_id: 7, why: "taken" }]);
+  });
+
+  it("takes one more by its name, wherever it is by then", async () => {
+    const desk = await started();
+    await desk.takeNamed(3);
+    expect([current(desk), inHand(desk)]).toEqual([3, [1, 3]]);
+    await desk.takeNamed(1);
+    expect([current(desk), inHand(desk)]).toEqual([1, [1, 3]]);
+    await desk.takeNamed(2); // which was loaded ahead
+    expect([current(desk), inHand(desk)]).toEqual([2, [1, 3, 2]]);
+    await desk.takeNamed(7);
+    expect(current(desk)).toBe(2);
+    expect(desk.state.get().refused).toEqual([{ shape_id: 7, why: "shape is with Ben" }]);
   });
 
   it("hands out nothing instead of a shape that is not to be had", async () => {

@@ -30,6 +30,8 @@ const AT_FIRST: DeskState = { phase: "opening", shapes: [], current: null, why: 
 
 export class Desk {
   readonly state = new Observable<DeskState>(AT_FIRST);
+  /** A shape is off the desk, and its draft closed: strokes of it that were not sent are nobody's. */
+  onLeft: () => void = () => {};
   private ahead: HeldShape | null = null;
   private isClosed = false;
 
@@ -65,6 +67,14 @@ export class Desk {
       await this.claimNext();
       void this.loadAhead();
     });
+  }
+
+  /** A shape by its name, beside those in hand. */
+  async takeNamed(shapeId: number): Promise<void> {
+    const inHand = this.state.get().shapes.find((shape) => shape.shapeId === shapeId);
+    if (inHand !== undefined) this.show(inHand);
+    else if (this.ahead?.shapeId === shapeId) await this.takeNext();
+    else await this.attempt(() => this.claimAndShow(shapeId));
   }
 
   show(shape: HeldShape): void {
@@ -110,6 +120,7 @@ export class Desk {
       else await this.takeNext();
     }
     await shape.close();
+    this.onLeft();
   }
 
   /** Whether a draft is open here, or may be once its shape is. */
@@ -161,6 +172,12 @@ export class Desk {
       if (!(error instanceof Problem) || error.status !== 409) throw error;
       return [{ shape_id: named[0] as number, why: error.message }]; // none of them, and why
     }
+  }
+
+  private async claimAndShow(shapeId: number): Promise<void> {
+    this.change({ refused: await this.claimNamed([shapeId]) });
+    const taken = this.state.get().shapes.find((shape) => shape.shapeId === shapeId);
+    if (taken !== undefined) this.show(taken);
   }
 
   private takeHeld(leased: Renewed<Lease>, since: number): void {

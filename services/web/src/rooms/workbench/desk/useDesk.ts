@@ -57,6 +57,7 @@ export function useDesk(
       void outbox.storeAgain();
       void leftovers.send();
     };
+    desk.onLeft = () => void leftovers.send();
     const ids = wanted === "" ? [] : wanted.split(",").map(Number);
     void desk
       .start(ids)

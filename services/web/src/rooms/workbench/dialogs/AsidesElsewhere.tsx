@@ -1,16 +1,21 @@
 import { useQueries } from "@tanstack/react-query";
 import { useState } from "react";
-import { Link } from "wouter";
 import { Button, Notice } from "../../../components";
 import type { DraftIdentity, Outbox } from "../../../drafts/outbox";
 import { shapeQuery } from "../shape/shapeRequests";
-import { workAddress } from "../workAddress";
 import { useAsides } from "./useAsides";
 
-const MOST_NAMED = 8;
+const MOST_NAMED = 4;
+
+export interface AsidesElsewhereProps {
+  outbox: Outbox;
+  /** Of the shape in hand. */
+  draft: DraftIdentity;
+  onTake: (shapeId: number) => void;
+}
 
 /** Other shapes of this person's that have strokes set aside: there they can be put on top. */
-export function AsidesElsewhere({ outbox, draft }: { outbox: Outbox; draft: DraftIdentity }) {
+export function AsidesElsewhere({ outbox, draft, onTake }: AsidesElsewhereProps) {
   const [isLater, setLater] = useState(false);
   const others = useAsides(outbox)
     .map((aside) => aside.draft)
@@ -27,18 +32,19 @@ export function AsidesElsewhere({ outbox, draft }: { outbox: Outbox; draft: Draf
     <Notice
       title="Strokes of other shapes are set aside"
       actions={
-        <Button size="small" onClick={() => setLater(true)}>
-          Later
-        </Button>
+        <>
+          {shapes.map(({ id, source_key }) => (
+            <Button key={id} size="small" onClick={() => onTake(id)}>
+              Open {source_key}
+            </Button>
+          ))}
+          <Button size="small" variant="quiet" onClick={() => setLater(true)}>
+            Later
+          </Button>
+        </>
       }
     >
-      Open the shape to put them on top, or to drop them:{" "}
-      {shapes.map(({ id, source_key }, place) => (
-        <span key={id}>
-          {place > 0 && ", "}
-          <Link href={workAddress(draft.collectionId, [id])}>{source_key}</Link>
-        </span>
-      ))}
+      There they can be put on top, or dropped.
     </Notice>
   );
 }

@@ -10,6 +10,7 @@ import { Observable } from "../../../drafts/observable";
 import { draftIdentity, type KeptAside } from "../../../drafts/outbox";
 import type { SaveState } from "../../../drafts/saveState";
 import { FakeService, stroke } from "../../../drafts/testing";
+import type { Desk } from "../desk/desk";
 import type { HeldShape } from "../desk/heldShape";
 import type { OpenShape } from "../shape/openShape";
 import { ShapeBanners } from "./ShapeBanners";
@@ -26,6 +27,7 @@ const REFUSED: SaveState = { kind: "refused", nQueued: 2, isKept: true, why: "no
 let save: Observable<SaveState>;
 let role: Observable<TabRole>;
 let asides: KeptAside[];
+const takeNamed = vi.fn();
 let open: ReturnType<typeof opened>;
 
 function opened() {
@@ -80,6 +82,7 @@ function show(): void {
     <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
       <ToastProvider>
         <ShapeBanners
+          desk={{ takeNamed } as unknown as Desk}
           held={held as unknown as HeldShape}
           open={open as unknown as OpenShape}
           isLossTold={false}
@@ -150,9 +153,7 @@ describe("strokes that were set aside", () => {
     asides = [7, 8].map((shapeId) => aside({ id: shapeId, draft: { ...DRAFT, shapeId } }));
     asides.push(aside({ id: 9, draft: { ...DRAFT, shapeId: 9, personId: 99 } }));
     show();
-    const links = await screen.findAllByRole("link");
-    expect(links.map((link) => [link.textContent, link.getAttribute("href")])).toEqual([
-      ["chair 7", "/c/1/work?shapes=7"],
-    ]);
+    fireEvent.click(await screen.findByRole("button", { name: /^Open/ }));
+    expect(takeNamed.mock.calls).toEqual([[7]]);
   });
 });

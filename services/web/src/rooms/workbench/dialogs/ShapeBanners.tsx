@@ -3,6 +3,7 @@ import { Button, Notice } from "../../../components";
 import { count } from "../../../components/numbers";
 import type { LeaseEnd } from "../../../drafts/leaseKeeper";
 import { useObservable } from "../../../drafts/useObservable";
+import type { Desk } from "../desk/desk";
 import type { HeldShape } from "../desk/heldShape";
 import type { OpenShape } from "../shape/openShape";
 import { AsidesElsewhere } from "./AsidesElsewhere";
@@ -11,6 +12,7 @@ import { SetAsideBar } from "./SetAsideBar";
 import { useTask } from "./useTask";
 
 export interface ShapeBannersProps {
+  desk: Desk;
   held: HeldShape;
   open: OpenShape;
   /** Another notice tells already that the shape went to somebody else. */
@@ -19,7 +21,7 @@ export interface ShapeBannersProps {
 }
 
 /** What the person must know about the shape in hand before they go on. */
-export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersProps) {
+export function ShapeBanners({ desk, held, open, isLossTold, onLeave }: ShapeBannersProps) {
   const lease = useObservable(held.keeper.state);
   const role = useObservable(open.draft.right.role);
   const isConfirmedElsewhere = useObservable(open.draft.isConfirmedElsewhere);
@@ -59,7 +61,11 @@ export function ShapeBanners({ held, open, isLossTold, onLeave }: ShapeBannersPr
         </Notice>
       )}
       <SetAsideBar open={open} />
-      <AsidesElsewhere outbox={open.draft.sender.outbox} draft={open.draft.sender.draft} />
+      <AsidesElsewhere
+        outbox={open.draft.sender.outbox}
+        draft={open.draft.sender.draft}
+        onTake={(shapeId) => void desk.takeNamed(shapeId)}
+      />
     </>
   );
 }
