@@ -277,6 +277,12 @@ describe("strokes of another tab", () => {
     expect(shape.canEdit).toBe(true);
   });
 
+  it("are waited for from the moment that the log has them", async () => {
+    const shape = await opened();
+    shape.draft.sender.follow(stroke(0, "theirs"));
+    expect(shape.perform(assign(2, 2, 3))).toBeNull();
+  });
+
   it("are done once, though they come while the labels are made anew", async () => {
     const shape = await opened();
     service.log = [stroke(0, "theirs")];

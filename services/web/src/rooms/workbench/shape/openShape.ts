@@ -79,7 +79,8 @@ export class OpenShape {
     const { kind } = this.draft.sender.state.get();
     const isSettled = kind !== "conflict" && kind !== "closed" && kind !== "refused";
     const isOver = this.isConfirming.get() || this.draft.isConfirmedElsewhere.get();
-    return this.draft.canEdit && isSettled && !isOver && !this.isBehind.get();
+    const isBehind = this.isBehind.get() || this.nDone !== this.draft.strokes.length;
+    return this.draft.canEdit && isSettled && !isOver && !isBehind;
   }
 
   /** From now on, strokes may only give these parts; null while they are not known. */
