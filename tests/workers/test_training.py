@@ -31,6 +31,7 @@ from partwise.store.records import (
     RevisionKind,
 )
 from partwise.store.reviews import NewReview, ReviewReason
+from partwise.workspace.reviewing import accept_all
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 from partwise_workers import training
 from partwise_workers.model_store import ModelReference, read_model
@@ -137,8 +138,19 @@ def test_labels_that_cannot_be_learned_from_yet_are_not_said_to_be_missing(descr
     workspace, collection = described
     revision_id = label(workspace, collection, 0, LABELS)
     workspace.catalog.add_review(revision_id, NewReview(ReviewReason.MAP_BACK))
-    with pytest.raises(NotEnoughDataError, match=r"none of 1 labelled shapes.+\(1 wait for a review\)"):
+    with pytest.raises(NotEnoughDataError, match=r"those of all 1 labelled shapes .+ `partwise reviews`"):
         train(workspace, collection)
+
+
+def test_labels_on_meshes_that_are_not_described_are_not_said_to_wait(described) -> None:
+    workspace, collection = described
+    revision_id = label(workspace, collection, 0, LABELS)
+    label(workspace, collection, 1, LABELS)
+    workspace.catalog.add_review(revision_id, NewReview(ReviewReason.MAP_BACK))
+    mesh = replace(workspace.config.mesh, max_faces=1000)
+    other = replace(workspace, config=replace(workspace.config, mesh=mesh))
+    with pytest.raises(NotEnoughDataError, match=r"none of 2 labelled shapes.+\(1 wait for a review\)"):
+        train(other, collection)
 
 
 def test_reference_labels_are_never_trained_on(described) -> None:
@@ -179,6 +191,20 @@ def test_labels_that_wait_for_a_review_are_left_out(described) -> None:
     assert list(labelled_shapes(workspace, collection)) == []
     workspace.catalog.accept_review(review.id, head.author_id)
     assert len(list(labelled_shapes(workspace, collection))) == 1
+
+
+def test_labels_of_other_parts_are_left_out_until_somebody_finds_them_right(described) -> None:
+    workspace, collection = described
+    for number in range(2):
+        label(workspace, collection, number, LABELS)
+    workspace.catalog.update_part(collection.id, 1, name="cap")
+    assert len(list(labelled_shapes(workspace, collection))) == 2
+    workspace.catalog.add_part(collection.id, "lid")
+    collection = workspace.catalog.get_collection("balls")
+    assert list(labelled_shapes(workspace, collection)) == []
+    author = workspace.catalog.list_people()[0]
+    assert accept_all(workspace.catalog, collection.id, ReviewReason.SCHEMA, author.id) == 2
+    assert len(list(labelled_shapes(workspace, collection))) == 2
 
 
 def test_shapes_described_under_other_parameters_are_left_out(described) -> None:

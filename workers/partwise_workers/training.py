@@ -275,6 +275,11 @@ def _nothing_to_learn(workspace: Workspace, collection: Collection) -> NotEnough
         return NotEnoughDataError(
             f"training needs labelled shapes but {collection.name!r} has none; confirm those `partwise select` names"
         )
+    if n_review == n_labelled:
+        return NotEnoughDataError(
+            f"training needs labels that wait for no review but those of all {n_review:,} labelled shapes of "
+            f"{collection.name!r} do; look at them, or accept many at once: `partwise reviews`"
+        )
     return NotEnoughDataError(
         f"training needs labels on meshes that are described as configured but none of {n_labelled:,} labelled shapes "
         f"of {collection.name!r} has any ({n_review:,} wait for a review); run `partwise preprocess`, which moves "
@@ -317,9 +322,9 @@ def _result(reference: "ray.ObjectRef[T]") -> T:
 def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[LearnableShape]:
     """Every shape whose newest human or imported labels can be learned from, by id.
 
-    They must belong to the mesh that is described, and to the present schema version (older ones wait for someone to
-    look at them); no review of them may be open. The description must be as the configuration says, so that no model
-    mixes two kinds.
+    They must belong to the mesh that is described, and no review of them may be open: when parts change one opens for
+    all, and who accepts it finds them right under the present ones. The description must be as the configuration says,
+    so that no model mixes two kinds.
     """
     catalog, after = workspace.catalog, 0
     stages = description_stages(workspace, collection)
@@ -330,7 +335,7 @@ def labelled_shapes(workspace: Workspace, collection: Collection) -> Iterator[Le
         for revision in page:
             shape_id = revision.shape_id
             places = _places([each.get(shape_id) for each in runs], chain_keys(shapes[shape_id], stages)[1:], revision)
-            if places is not None and revision.schema_version == collection.schema_version:
+            if places is not None:
                 yield LearnableShape(shape_id, revision.id, *places)
         after = ids[-1]
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from partwise.errors import ConfigError
+from partwise.store.reviews import ReviewReason
 from partwise_cli.arguments import (
     CollectionOption,
     HostOption,
@@ -19,7 +20,7 @@ from partwise_cli.arguments import (
     PublicUrlOption,
     WorkspaceArgument,
 )
-from partwise_cli.terminal import print_json, print_table
+from partwise_cli.terminal import counted, print_json, print_table
 
 if TYPE_CHECKING:
     from partwise.store.catalog import Catalog
@@ -178,15 +179,27 @@ def list_reviews(ws: WorkspaceArgument, collection: CollectionOption = None, as_
 @reviews_app.command()
 def accept(
     ws: WorkspaceArgument,
-    review: Annotated[int, typer.Argument(help="The review's number.", show_default=False)],
     person: PersonOption,
+    review: Annotated[int | None, typer.Argument(help="The review's number.", show_default=False)] = None,
+    is_all: Annotated[bool, typer.Option("--all", help="All that wait for --reason.")] = False,
+    reason: Annotated[ReviewReason | None, typer.Option(help="Why they wait.", show_default=False)] = None,
+    collection: CollectionOption = None,
 ) -> None:
-    """Labels are right as they are.  [dim]partwise reviews accept ws 3 --person ann[/dim]"""
+    """Labels are right as they are.  [dim]partwise reviews accept ws --all --reason schema --person ann[/dim]"""
+    from partwise.workspace.reviewing import accept_all
+    from partwise.workspace.shapes import find_collection
     from partwise.workspace.workspace import open_workspace
 
+    if (review is None) != is_all or (reason is None) == is_all:
+        raise typer.BadParameter("name one review by its number, or many with --all --reason")
     with open_workspace(ws) as workspace:
-        done = workspace.catalog.accept_review(review, _known_or_new(workspace.catalog, person).id)
-    typer.echo(f"review {done.id} accepted by {person}")
+        person_id = _known_or_new(workspace.catalog, person).id
+        if review is not None:
+            workspace.catalog.accept_review(review, person_id)
+            typer.echo(f"review {review} accepted by {person}")
+        elif reason is not None:
+            n_accepted = accept_all(workspace.catalog, find_collection(workspace, collection).id, reason, person_id)
+            typer.echo(f"{counted(n_accepted, 'review')} of reason {reason} accepted by {person}")
 
 
 def _known_or_new(catalog: "Catalog", name: str) -> "Person":

@@ -7,10 +7,11 @@ from fastapi import APIRouter, Query
 
 from partwise.errors import ConflictError, NotFoundError
 from partwise.store.catalog import LabelCatalog
-from partwise.store.reviews import NewReview, Review, ReviewReason
+from partwise.store.reviews import Review, ReviewReason
+from partwise.workspace.reviewing import accept_all
 from partwise_service.answering import AnswerRoute
 from partwise_service.dependencies import CatalogDep, Reviewer, ScopedCollection, ScopedShape, shapes_of
-from partwise_service.schemas.accepts import BulkRejection, RefusedOut, Rejected
+from partwise_service.schemas.accepts import BulkRejection, RefusedOut, Rejected, ReviewAcceptance, ReviewsAccepted
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
 from partwise_service.schemas.shapes import (
     EffortOut,
@@ -52,6 +53,14 @@ def count_open_reviews(
     return ReviewCount(n_reviews=catalog.count_open_reviews(collection.id, reasons=reasons))
 
 
+@router.post("/collections/{collection_id}/reviews/accept")
+def accept_reviews(
+    caller: Reviewer, collection: ScopedCollection, catalog: CatalogDep, acceptance: ReviewAcceptance
+) -> ReviewsAccepted:
+    """All labels that wait for this reason are right as they are."""
+    return ReviewsAccepted(n_accepted=accept_all(catalog, collection.id, acceptance.reason, caller.person_id))
+
+
 @router.get("/shapes/{shape_id}/reviews")
 def list_reviews_of_shape(shape: ScopedShape, catalog: CatalogDep) -> ReviewsOut:
     """Every review of a shape, open or not, oldest first."""
@@ -78,7 +87,8 @@ def reject_review(
 @router.post("/shapes/{shape_id}/reject")
 def reject_labels(caller: Reviewer, shape: ScopedShape, catalog: CatalogDep, rejection: Rejection) -> ReviewOut:
     """Send a shape's newest labels back for rework, whether or not a review of them is open."""
-    return ReviewOut.of(_sent_back(catalog, shape.id, caller.person_id, rejection.note, rejection.for_author))
+    for_author = rejection.for_author
+    return ReviewOut.of(catalog.reject_labels(shape.id, caller.person_id, rejection.note, for_author=for_author))
 
 
 @router.post("/collections/{collection_id}/reject")
@@ -89,7 +99,7 @@ def reject_many(
     rejected, refused = [], []
     for shape in shapes_of(catalog, collection, rejection.shape_ids):
         try:
-            _sent_back(catalog, shape.id, caller.person_id, rejection.note, rejection.for_author)
+            catalog.reject_labels(shape.id, caller.person_id, rejection.note, for_author=rejection.for_author)
             rejected.append(shape.id)
         except (ConflictError, NotFoundError) as error:
             refused.append(RefusedOut(shape_id=shape.id, why=str(error)))
@@ -102,17 +112,6 @@ def _with_efforts(catalog: LabelCatalog, found: Sequence[Review]) -> list[OpenRe
         OpenReviewOut(**ReviewOut.of(review).model_dump(), effort=EffortOut.of(efforts.get(review.revision_id)))
         for review in found
     ]
-
-
-def _sent_back(catalog: LabelCatalog, shape_id: int, person_id: int, note: str, for_author: bool) -> Review:
-    head = catalog.head_revision(shape_id)
-    if head is None:
-        raise NotFoundError(f"shape {shape_id} has no labels to send back")
-    opened = [review for review in catalog.reviews(shape_id) if review.resolved_at is None]
-    if any(review.reason is ReviewReason.REWORK for review in opened):
-        raise ConflictError(f"labels are sent back once but those of shape {shape_id} were already; await better ones")
-    review = opened[0] if opened else catalog.add_review(head.id, NewReview(ReviewReason.CHECK))
-    return catalog.reject_review(review.id, person_id, note, for_author=for_author)
 
 
 def _refuse_foreign(catalog: LabelCatalog, shape_id: int, review_id: int) -> None:

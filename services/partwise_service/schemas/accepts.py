@@ -8,6 +8,7 @@ from pydantic import Field
 
 from partwise.metrics.proportion import share_interval
 from partwise.store.records import AcceptBatch
+from partwise.store.reviews import ReviewReason
 from partwise_service.schemas.base import NO_NUL, WHOLE, Answer, AnyId, Request
 
 MAX_AT_ONCE = 500
@@ -105,3 +106,13 @@ class BulkRejection(Request):
 class Rejected(Answer):
     rejected: list[int]
     refused: list[RefusedOut]
+
+
+class ReviewAcceptance(Request):
+    """Why the labels that are accepted wait; not those that were sent back."""
+
+    reason: Annotated[ReviewReason, Field(strict=False)]
+
+
+class ReviewsAccepted(Answer):
+    n_accepted: int

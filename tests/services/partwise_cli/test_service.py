@@ -83,6 +83,18 @@ def test_accepting_a_review(invoke, waiting) -> None:
     assert json.loads(invoke("reviews", "list", waiting, "--json").stdout) == []
 
 
+def test_accepting_all_reviews_of_a_reason(invoke, waiting) -> None:
+    options = ("--all", "--reason", "check", "--person", "rita")
+    assert "1 review of reason check accepted by rita" in invoke("reviews", "accept", waiting, *options).stdout
+    assert json.loads(invoke("reviews", "list", waiting, "--json").stdout) == []
+
+
+@pytest.mark.parametrize("options", [(), ("1", "--all", "--reason", "check"), ("--all",), ("1", "--reason", "check")])
+def test_one_review_or_all_of_a_reason_are_accepted(invoke, waiting, options) -> None:
+    assert invoke("reviews", "accept", waiting, *options, "--person", "rita").exit_code == 2
+    assert len(json.loads(invoke("reviews", "list", waiting, "--json").stdout)) == 1
+
+
 def test_a_port_that_is_taken_is_named(invoke, empty) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]

@@ -147,7 +147,16 @@ def test_a_reviewer_chooses(reviewer, workspace, collection, disputed, place) ->
     assert set(workspace.catalog.labels(chosen["id"]).tolist()) == {place + 1}
     assert chosen["author_id"] == found["answers"][place]["person_id"]
     assert reviewer.get(f"{collection}/disagreements").json()["items"] == []
-    assert reviewer.post(path, json={"answer_id": found["answers"][place]["id"]}).status_code == 404
+    assert reviewer.post(path, json={"answer_id": found["answers"][place]["id"]}).status_code == 409
+
+
+def test_a_reviewer_chooses_among_what_the_review_compares(reviewer, workspace, collection, mugs, disputed) -> None:
+    (found,) = reviewer.get(f"{collection}/disagreements").json()["items"]
+    path = f"/shapes/{disputed}/reviews/{found['review_id']}/choose"
+    assert reviewer.post(path, json={"answer_id": 99}).status_code == 404
+    foreign = path.replace(f"/shapes/{disputed}/", f"/shapes/{mugs.ids['b.off']}/")
+    assert reviewer.post(foreign, json={"answer_id": found["answers"][0]["id"]}).status_code == 404
+    assert [entry.action for entry in workspace.catalog.latest_audit(limit=1)] != ["choose labels"]
 
 
 def test_a_reviewer_keeps_the_medoid_or_has_it_done_again(reviewer, collection, disputed) -> None:

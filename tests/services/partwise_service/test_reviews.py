@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from partwise.store.records import NewRevision, RevisionKind, Role
+from partwise.store.records import NewRevision, RevisionKind, Role, ShapeState
 from partwise.store.reviews import NewReview, ReviewReason
 
 
@@ -72,3 +72,36 @@ def test_annotators_review_nothing(annotator, mugs, waiting) -> None:
         assert annotator.get(f"/collections/{mugs.collection_id}/{path}").status_code == 403
     assert annotator.post(f"{waiting}/accept").status_code == 403
     assert annotator.post(f"{waiting}/reject", json={"note": "no"}).status_code == 403
+
+
+def test_what_waits_for_one_reason_is_accepted_at_once(reviewer, workspace, mugs, waiting) -> None:
+    collection = f"/collections/{mugs.collection_id}"
+    workspace.catalog.add_part(mugs.collection_id, "lid")
+    accepted = reviewer.post(f"{collection}/reviews/accept", json={"reason": "schema"})
+    assert accepted.json() == {"n_accepted": 1}
+    assert [each["reason"] for each in reviewer.get(f"{collection}/reviews").json()["items"]] == ["check"]
+    assert reviewer.post(f"{collection}/reviews/accept", json={"reason": "rework"}).status_code == 422
+
+
+def test_annotators_accept_nothing_at_once(annotator, mugs, waiting) -> None:
+    path = f"/collections/{mugs.collection_id}/reviews/accept"
+    assert annotator.post(path, json={"reason": "check"}).status_code == 403
+
+
+@pytest.fixture
+def confirmed(reviewer, waiting) -> int:
+    """Labels of a.off that nobody has to look at; its id."""
+    return reviewer.post(f"{waiting}/accept").json()["shape_id"]
+
+
+def test_a_blank_note_sends_nothing_back(reviewer, workspace, mugs, confirmed) -> None:
+    assert reviewer.post(f"/shapes/{confirmed}/reject", json={"note": "  "}).status_code == 422
+    many = {"shape_ids": [mugs.ids["b.off"], confirmed], "note": " "}
+    assert reviewer.post(f"/collections/{mugs.collection_id}/reject", json=many).status_code == 422
+    assert workspace.catalog.shape_states([confirmed]) == {confirmed: ShapeState.CONFIRMED}
+
+
+def test_what_somebody_works_on_is_not_sent_back_and_stays_confirmed(reviewer, workspace, confirmed) -> None:
+    workspace.catalog.claim_shape(confirmed, workspace.catalog.get_person("eve").id, 60)
+    assert reviewer.post(f"/shapes/{confirmed}/reject", json={"note": "no"}).status_code == 409
+    assert workspace.catalog.shape_states([confirmed]) == {confirmed: ShapeState.CONFIRMED}

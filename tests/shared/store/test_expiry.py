@@ -8,7 +8,7 @@ import pytest
 from partwise.errors import ConflictError
 from partwise.store.records import LeaseOutcome, NewClaim, NewConfirmation, NewToken, Role
 from partwise.store.sql_catalog import SqlCatalog
-from partwise.testing.catalog.samples import blank_draft, claim, ready_shapes, strokes
+from partwise.testing.catalog.samples import blank_draft, claim, label, ready_shapes, strokes
 from partwise.testing.expect import raises
 
 
@@ -89,6 +89,30 @@ def test_who_comes_with_labels_goes_before_whose_lease_expired(timed: SqlCatalog
     assert timed.confirm_draft(NewConfirmation(draft.id, ann.id, 0, np.ones(6, int), 1)).revision_id is not None
     assert timed.lease(theirs.id).outcome is LeaseOutcome.EXPIRED
     assert [revision.author_id for revision in timed.revisions(shape_id)] == [ann.id]
+    assert _told(timed, "expired") == [shape_id, shape_id]  # of each of the two
+
+
+@pytest.mark.parametrize("is_rejection", [True, False])
+def test_an_expired_lease_keeps_no_shape_from_being_done_again(
+    timed: SqlCatalog, clock: Clock, is_rejection: bool
+) -> None:
+    collection, (shape_id,) = ready_shapes(timed, 1)
+    head = label(timed, shape_id)
+    bob = timed.add_person("bob")
+    lease = timed.claim_shape(shape_id, bob.id, 60)
+    clock.move(61)
+    if is_rejection:
+        timed.reject_labels(shape_id, head.author_id, "no")
+    else:
+        timed.reopen_shape(shape_id, head.author_id)
+    assert timed.lease(lease.id).outcome is LeaseOutcome.EXPIRED
+    assert _told(timed, "expired") == [shape_id]
+    assert claim(timed, collection, bob).round == lease.round + 1
+
+
+def _told(catalog: SqlCatalog, what: str) -> list[int]:
+    """Shapes of which events say so."""
+    return [event.payload["shape_id"] for event in catalog.events(after=0) if event.payload.get("what") == what]
 
 
 def test_tokens_sessions_and_codes_end(timed: SqlCatalog, clock: Clock) -> None:

@@ -12,7 +12,8 @@ from partwise.errors import ConflictError
 from partwise.labels.encoding import encode_labels
 from partwise.store.engine import connect_engine, parsed_url, reading, writing
 from partwise.store.migrate import migrate
-from partwise.store.records import NewClaim, ShapeFilter, ShapeOrder
+from partwise.store.records import NewClaim, ShapeFilter, ShapeOrder, ShapeState
+from partwise.store.reviews import ReviewOutcome, ReviewReason
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.testing.expect import raises
 
@@ -122,4 +123,11 @@ def test_orders_by_score_have_what_shapes_are_filtered_by(migrated: SqlCatalog) 
     assert [row.shape.id for row in migrated.list_shapes(1, order=order)] == [2, 1]
     with reading(migrated._engine) as connection:
         copies = connection.execute(text("SELECT shape_id, state, author_id, source_key FROM score ORDER BY shape_id"))
-        assert [tuple(row) for row in copies] == [(1, "confirmed", 1, "a.off"), (2, "ready", None, "b.off")]
+        assert [tuple(row) for row in copies] == [(1, "review", 1, "a.off"), (2, "ready", None, "b.off")]
+
+
+def test_labels_of_other_parts_than_the_present_ones_wait_for_a_look(migrated: SqlCatalog) -> None:
+    (review,) = migrated.open_reviews(1)
+    assert (review.revision_id, review.reason, review.detail) == (1, ReviewReason.SCHEMA, {"version": 2})
+    assert migrated.accept_review(review.id, 1).outcome is ReviewOutcome.ACCEPTED
+    assert [row.state for row in migrated.list_shapes(1)] == [ShapeState.CONFIRMED, ShapeState.READY]

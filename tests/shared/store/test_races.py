@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 import pytest
 from sqlalchemy import text
+from sqlalchemy.event import listens_for
 
 from partwise.errors import ConflictError, StaleDraftError
 from partwise.store.engine import reading
@@ -316,3 +317,18 @@ def test_labels_of_many_are_accepted_while_parts_change(shared: SqlCatalog) -> N
     shared.add_part(collection.id, "last")
     assert {review.shape_id for review in shared.open_reviews(collection.id)} == {head.shape_id for head in heads}
     assert {row.state for row in shared.list_shapes(collection.id)} == {ShapeState.REVIEW}
+
+
+def test_who_claims_while_a_shape_is_reopened_gets_another(postgres_catalog: SqlCatalog) -> None:
+    collection, (reopened, other) = ready_shapes(postgres_catalog, 2)
+    ann = postgres_catalog.add_person("ann")
+    claimed: list[int] = []
+
+    @listens_for(postgres_catalog._engine, "before_cursor_execute")
+    def claim_meanwhile(_connection: object, _cursor: object, statement: str, *_: object) -> None:
+        if statement.startswith("DELETE FROM queue_rank"):
+            claimed.append(claim(postgres_catalog, collection, ann).shape_id)
+
+    postgres_catalog.reopen_shape(reopened, ann.id)
+    assert claimed == [other]
+    assert _free_places_of_holders(postgres_catalog) == 0

@@ -43,6 +43,9 @@ class CollectionCatalog(Protocol):
     ) -> PartSchema:
         """Add a part under the next free id and make the next schema version.
 
+        Human and imported labels of older versions wait in a review of reason schema from then on: whether the part
+        is missing in them is for somebody to say. An open one stays, and is then about the newer version.
+
         Raises `ConflictError` if the name is taken, `LabelError` for a parent that is not in the schema.
         """
         ...
@@ -65,10 +68,10 @@ class CollectionCatalog(Protocol):
         ...
 
     def remove_part(self, collection_id: int, part_id: int) -> PartSchema:
-        """Leave a part out of the next schema version. Its id is never used again.
+        """Leave a part out of the next schema version. Its id is never used again. Reviews open as in `add_part`.
 
-        Raises `ConflictError` for a part that other parts are below, or that the newest human or imported labels of any
-        shape use; the message says of how many.
+        Raises `ConflictError` for a part that other parts are below, that the newest human or imported labels of any
+        shape use, or that independent labels use which may yet become a shape's; the message says of how many.
         """
         ...
 

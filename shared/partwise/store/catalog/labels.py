@@ -21,12 +21,13 @@ class LabelCatalog(Protocol):
         """Commit labels, and with them an audit entry and, if given, a review that keeps them out of training.
 
         Human or imported labels resolve the open reviews of those whose place they take. Moved labels take over the
-        reviews that have nothing to do with the move.
+        reviews that have nothing to do with the move. Human or imported labels of an older schema version than the
+        present one come with a review of reason schema.
 
         Raises `LabelError` if the mesh is not one of the shape's, there is not one label per face, an id is not in the
         schema version named, that version does not exist, the parent is not a revision of the same shape, or labels
-        that are never shown are to be reviewed. Raises `ConflictError` for moved labels whose parent is not, or no
-        longer, the newest revision of the shape.
+        that are never shown are to be reviewed, or labels that are shown have a part that is gone. Raises
+        `ConflictError` for moved labels whose parent is not, or no longer, the newest revision of the shape.
         """
         ...
 
@@ -102,9 +103,17 @@ class LabelCatalog(Protocol):
         ...
 
     def accept_review(self, review_id: int, person_id: int) -> Review:
-        """Record that a person found the labels right as they are. `ConflictError` if the review is resolved already.
+        """Record that a person found the labels right as they are: under the present parts, whatever version they were
+        made under. `ConflictError` if the review is resolved already.
 
         Labels that are not right are corrected by committing better ones, which resolves the review.
+        """
+        ...
+
+    def accept_reviews(self, collection_id: int, reason: ReviewReason, person_id: int, *, limit: int = 1000) -> int:
+        """As `accept_review`, of the oldest reviews of a reason, at most `limit` of them; how many those were.
+
+        Call it until it is 0: others wait while it writes. Raises `ParameterError` for labels that were sent back.
         """
         ...
 
@@ -115,5 +124,22 @@ class LabelCatalog(Protocol):
 
         Raises `ConflictError` if the review is resolved already or somebody works on the shape, `ParameterError`
         without a note.
+        """
+        ...
+
+    def reject_labels(self, shape_id: int, person_id: int, note: str, *, for_author: bool = False) -> Review:
+        """As `reject_review`, of a shape's newest labels, whether or not a review of them is open.
+
+        Raises `NotFoundError` without labels, `ConflictError` if they were sent back already or somebody works on the
+        shape, `ParameterError` without a note.
+        """
+        ...
+
+    def choose_answer(self, review_id: int, answer_id: int, person_id: int) -> LabelRevision:
+        """Make one of the labels that a review of reason disagreement compares the shape's, in the name of who gave
+        them, which resolves the review. person_id : whose decision that is.
+
+        Raises `NotFoundError` for an answer of another round, `ConflictError` for a review of another reason or one
+        that is resolved, `LabelError` if the answer has a part that is gone.
         """
         ...

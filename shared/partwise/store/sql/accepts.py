@@ -28,7 +28,7 @@ from partwise.store.sql.dialect import batches
 from partwise.store.sql.events import append_events
 from partwise.store.sql.labels import commit_revision
 from partwise.store.sql.places import FIRST
-from partwise.store.sql.reviews import lock_labels
+from partwise.store.sql.shapes import lock_labels
 
 
 def begin_accept(
@@ -92,7 +92,7 @@ def draw_shape(
 
 def _refuse_busy(connection: Connection, collection_id: int, shape_id: int, now: datetime) -> None:
     """Only what just waits is accepted: people's work is never passed over."""
-    lock_labels(connection, shape_id)
+    lock_labels(connection, [shape_id])
     facet = t.shape_facet.c
     known = select(facet.state).where(facet.shape_id == shape_id, facet.collection_id == collection_id)
     state = connection.execute(known).scalar()

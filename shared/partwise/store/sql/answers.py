@@ -22,7 +22,7 @@ from partwise.store.records import (
     NewBlindCheck,
     NewConsensus,
 )
-from partwise.store.sql.collections import parts
+from partwise.store.sql.collections import parts, schema_version
 
 _COLUMNS = tuple(column for column in t.answer.c if column.name not in ("labels", "purpose"))
 _CLOSENESS = ("area_agreement", "part_iou", "boundary_distance")
@@ -30,8 +30,11 @@ _CLOSENESS = ("area_agreement", "part_iou", "boundary_distance")
 
 def add_answer(connection: Connection, draft: Draft, labels: UInt16[np.ndarray, " m"], now: datetime) -> Answer:
     n_faces = connection.execute(select(t.mesh.c.n_faces).where(t.mesh.c.hash == draft.mesh_hash)).scalar_one()
-    schema = parts(connection, draft.collection_id, draft.schema_version)
-    encoded = encode_labels(checked_labels(labels, n_faces, schema))
+    version = schema_version(connection, draft.collection_id, for_share=True)  # no part is removed meanwhile
+    checked = checked_labels(labels, n_faces, parts(connection, draft.collection_id, draft.schema_version))
+    if draft.purpose is LeasePurpose.INDEPENDENT:  # they may become the shape's: with no part that is gone
+        checked_labels(checked, n_faces, parts(connection, draft.collection_id, version))
+    encoded = encode_labels(checked)
     values = {
         "shape_id": draft.shape_id,
         "slot": draft.slot,

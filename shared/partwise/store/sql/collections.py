@@ -1,17 +1,16 @@
-"""Collections, their versioned part schemas, people, and the audit trail."""
+"""Collections, the versions of their part schemas, people, and the audit trail."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, exists, func, insert, or_, select, update
+from sqlalchemy import Connection, Row, insert, or_, select, update
 
 from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.labels.palette import default_colour
-from partwise.labels.schema import MAX_PART_ID, Part, PartSchema
+from partwise.labels.schema import Part, PartSchema
 from partwise.store import tables as t
-from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import AuditEntry, Collection, Person
 
 
@@ -28,11 +27,12 @@ def create_collection(
     values: dict[str, Any] = {"name": name, "settings": dict(settings), "schema_version": 1, "created_at": now}
     collection_id = connection.execute(insert(t.collection).values(values).returning(t.collection.c.id)).scalar_one()
     if parts:
-        connection.execute(insert(t.part), [_part_row(collection_id, part, 1) for part in schema.parts])
+        connection.execute(insert(t.part), [part_row(collection_id, part, 1) for part in schema.parts])
     return Collection(id=collection_id, **values)
 
 
-def _part_row(collection_id: int, part: Part, version: int) -> dict[str, Any]:
+def part_row(collection_id: int, part: Part, version: int) -> dict[str, Any]:
+    """A new part as a row of `part`."""
     return {
         "collection_id": collection_id,
         "id": part.id,
@@ -117,102 +117,6 @@ def _distinct_names(parts_of_version: Sequence[Part]) -> tuple[Part, ...]:
         part if names.count(part.name) == 1 else replace(part, name=f"{part.name[:56]} ({part.id})")
         for part in parts_of_version
     )
-
-
-def add_part(
-    connection: Connection, collection_id: int, name: str, colour: str | None, gloss: str, parent_id: int | None
-) -> PartSchema:
-    version = schema_version(connection, collection_id, for_update=True) + 1
-    _refuse_taken_name(connection, collection_id, name, None)
-    last = connection.execute(select(func.max(t.part.c.id)).where(t.part.c.collection_id == collection_id)).scalar()
-    part_id = (last or 0) + 1
-    if part_id > MAX_PART_ID:
-        raise LabelError(f"a collection can have {MAX_PART_ID} parts in its life and has had them; start another")
-    part = Part(part_id, name, colour or default_colour(part_id), gloss, parent_id)
-    PartSchema(version, (*parts(connection, collection_id).parts, part))  # refuses an unknown parent
-    connection.execute(insert(t.part).values(_part_row(collection_id, part, version)))
-    _set_version(connection, collection_id, version)
-    return parts(connection, collection_id)
-
-
-def update_part(
-    connection: Connection,
-    collection_id: int,
-    part_id: int,
-    name: str | None,
-    colour: str | None,
-    gloss: str | None,
-    parent_id: int | None,
-) -> PartSchema:
-    schema_version(connection, collection_id, for_update=True)
-    schema = parts(connection, collection_id)
-    old = schema.part(part_id)
-    new = Part(
-        part_id,
-        old.name if name is None else name,
-        old.colour if colour is None else colour,
-        old.gloss if gloss is None else gloss,
-        old.parent_id if parent_id is None else parent_id or None,
-    )
-    _refuse_taken_name(connection, collection_id, new.name, part_id)
-    PartSchema(schema.version, tuple(new if part.id == part_id else part for part in schema.parts))  # refuses a cycle
-    connection.execute(
-        update(t.part)
-        .where(t.part.c.collection_id == collection_id, t.part.c.id == part_id)
-        .values(name=new.name, colour=new.colour, gloss=new.gloss, parent_id=new.parent_id)
-    )
-    return parts(connection, collection_id)
-
-
-def remove_part(connection: Connection, collection_id: int, part_id: int) -> PartSchema:
-    version = schema_version(connection, collection_id, for_update=True) + 1
-    schema = parts(connection, collection_id)
-    part = schema.part(part_id)  # refuses an unknown or already removed part
-    if children := [child.name for child in schema.parts if child.parent_id == part_id]:
-        raise ConflictError(
-            f"part {part.name!r} has the parts {', '.join(children)} below it; give them another parent first"
-        )
-    if n_shapes := _n_shapes_using(connection, collection_id, part_id):
-        raise ConflictError(
-            f"a part in use is not removed but {part.name!r} is in the labels of {n_shapes:,} "
-            f"{'shape' if n_shapes == 1 else 'shapes'}; label those faces otherwise first"
-        )
-    connection.execute(
-        update(t.part)
-        .where(t.part.c.collection_id == collection_id, t.part.c.id == part_id)
-        .values(schema_version_removed=version)
-    )
-    _set_version(connection, collection_id, version)
-    return parts(connection, collection_id)
-
-
-def _n_shapes_using(connection: Connection, collection_id: int, part_id: int) -> int:
-    """Shapes whose newest human or imported labels have the part: read from the revisions that ever had it."""
-    newer = t.label_revision.alias("newer")
-    kinds = [kind.value for kind in SHOWN_KINDS]
-    is_outdated = exists().where(
-        newer.c.shape_id == t.label_revision.c.shape_id,
-        newer.c.kind.in_(kinds),
-        newer.c.id > t.label_revision.c.id,
-    )
-    query = (
-        select(func.count())
-        .select_from(t.label_part)
-        .join(t.label_revision, t.label_revision.c.id == t.label_part.c.revision_id)
-        .where(t.label_part.c.collection_id == collection_id, t.label_part.c.part_id == part_id)
-        .where(t.label_revision.c.kind.in_(kinds), ~is_outdated)
-    )
-    return connection.execute(query).scalar_one()
-
-
-def _refuse_taken_name(connection: Connection, collection_id: int, name: str, part_id: int | None) -> None:
-    for part in parts(connection, collection_id).parts:
-        if part.name == name and part.id != part_id:
-            raise ConflictError(f"each part must have its own name but {name!r} is part {part.id}; choose another")
-
-
-def _set_version(connection: Connection, collection_id: int, version: int) -> None:
-    connection.execute(update(t.collection).where(t.collection.c.id == collection_id).values(schema_version=version))
 
 
 def add_person(connection: Connection, name: str, now: datetime) -> Person:

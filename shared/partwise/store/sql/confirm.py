@@ -32,7 +32,7 @@ from partwise.store.sql.drafts import close_draft, locked_draft, refuse_closed, 
 from partwise.store.sql.events import append_events
 from partwise.store.sql.labels import commit_revision, head_revisions, labelled_event
 from partwise.store.sql.places import collection_queue_settings
-from partwise.store.sql.reviews import lock_labels
+from partwise.store.sql.shapes import lock_labels
 
 _LEASE_S = 60.0  # of a lease that is taken up again to be completed at once
 
@@ -48,8 +48,8 @@ def confirm_draft(connection: Connection, new: NewConfirmation, now: datetime) -
             f"all strokes are confirmed but draft {draft.id} has {draft.n_strokes}, not {new.n_strokes}; fold them"
         )
         raise stale(connection, draft, message)
-    lock_labels(connection, draft.shape_id)
-    draft, lease = _with_lease(connection, replace(draft, schema_version=new.schema_version), now)
+    lock_labels(connection, [draft.shape_id])
+    draft, lease, expired = _with_lease(connection, replace(draft, schema_version=new.schema_version), now)
     confirmation, events = _commit(connection, draft, new, sha256, now)
     if lease is not None:
         events.append(leases.end(connection, lease, LeaseOutcome.COMPLETED, now)[1])
@@ -63,7 +63,7 @@ def confirm_draft(connection: Connection, new: NewConfirmation, now: datetime) -
     }
     append_audit(connection, name, "confirm", f"draft {draft.id}", detail, now)
     done = NewEvent(EventKind.PEOPLE, draft.collection_id, {"person_id": draft.person_id, "what": "confirmed"})
-    append_events(connection, [*events, done], now)
+    append_events(connection, [*expired, *events, done], now)
     return confirmation
 
 
@@ -89,24 +89,22 @@ def _known(connection: Connection, draft: Draft) -> Confirmation:
     return Confirmation(draft.id, draft.shape_id, draft.labels_sha256 or "", revision_id, answer_id, None)
 
 
-def _with_lease(connection: Connection, draft: Draft, now: datetime) -> tuple[Draft, Lease | None]:
-    """The draft under the lease that its author holds, or takes up again if the place is free.
+def _with_lease(connection: Connection, draft: Draft, now: datetime) -> tuple[Draft, Lease | None, list[NewEvent]]:
+    """The draft under the lease that its author holds, or takes up again if the place is free; events of what ended.
 
     Whoever is checked blindly needs none: nobody else's work depends on it.
     """
-    held = leases.active_of_shape(connection, draft.shape_id)
-    for lease in held:
+    for lease in leases.active_of_shape(connection, draft.shape_id):
         if lease.person_id == draft.person_id:
             own = leases.own_active(connection, lease.id, draft.person_id)
-            return replace(draft, slot=own.slot, round=own.round, purpose=own.purpose), own
+            return replace(draft, slot=own.slot, round=own.round, purpose=own.purpose), own, []
     if draft.purpose is LeasePurpose.BLIND:
-        return draft, None
-    expired = [each for each in held if each.expires_at < now]
-    for lease in expired:  # who let theirs expire has no more right to the place than who comes with labels
-        leases.end(connection, leases.own_active(connection, lease.id, lease.person_id), LeaseOutcome.EXPIRED, now)
-    if len(held) > len(expired) and draft.purpose is LeasePurpose.LABEL:
+        return draft, None, []
+    # who let theirs expire has no more right to the place than who comes with labels
+    still_held, events = leases.end_expired(connection, draft.shape_id, now)
+    if still_held and draft.purpose is LeasePurpose.LABEL:
         raise _taken(draft)
-    return draft, _taken_up(connection, draft, now)
+    return draft, _taken_up(connection, draft, now), events
 
 
 def _taken_up(connection: Connection, draft: Draft, now: datetime) -> Lease:

@@ -16,14 +16,14 @@ from partwise.labels.encoding import EncodedLabels, decode_labels, encode_labels
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import EventKind, LabelRevision, NewEvent, NewRevision, RevisionKind, ShapeState
-from partwise.store.reviews import NewReview, Review, RevisionOrigin
+from partwise.store.reviews import NewReview, Review, ReviewReason, RevisionOrigin
 from partwise.store.sql.collections import append_audit, parts, schema_version
 from partwise.store.sql.dialect import batches
 from partwise.store.sql.events import append_events
 from partwise.store.sql.facets import note_reference, renew_facets, renew_head_parts
 from partwise.store.sql.places import close_places
-from partwise.store.sql.reviews import MACHINE, add_review, lock_labels, succeed_reviews
-from partwise.store.sql.shapes import refuse_unknown_shapes
+from partwise.store.sql.reviews import MACHINE, add_review, succeed_reviews
+from partwise.store.sql.shapes import lock_labels, refuse_unknown_shapes
 from partwise.store.sql.tally import count_confirmed
 from partwise.unlabelled import NO_PART_ID
 
@@ -46,10 +46,13 @@ def commit_revision(
     author = connection.execute(select(t.person.c.name).where(t.person.c.id == revision.author_id)).scalar()
     if author is None:
         raise NotFoundError(f"there is no person with id {revision.author_id}; add the author first")
-    lock_labels(connection, revision.shape_id)
-    schema_version(connection, shape.collection_id, for_share=True)  # no part is removed while labels with it come in
+    lock_labels(connection, [revision.shape_id])
+    # no parts change while labels with them come in
+    version = schema_version(connection, shape.collection_id, for_share=True)
     schema = parts(connection, shape.collection_id, revision.schema_version)
     checked = checked_labels(revision.labels, _n_faces(connection, revision), schema)
+    if revision.kind in SHOWN_KINDS:
+        checked_labels(checked, checked.size, parts(connection, shape.collection_id, version))  # no part that is gone
     encoded = encode_labels(checked)
     _refuse_foreign_parent(connection, revision)
     if revision.origin is not None:
@@ -72,11 +75,18 @@ def commit_revision(
     committed = LabelRevision(**{**values, "id": revision_id, "kind": revision.kind, "origin": revision.origin})
     if revision.kind in SHOWN_KINDS:
         succeed_reviews(connection, committed, now)
-    review = None if new_review is None else add_review(connection, revision_id, new_review, now)
+    wanted = [] if new_review is None else [new_review]
+    if revision.kind in SHOWN_KINDS and revision.origin is None and revision.schema_version < version:
+        wanted.append(NewReview(ReviewReason.SCHEMA, {"version": version}))  # moved labels take theirs along
+    added = [add_review(connection, revision_id, each, now) for each in wanted]
     detail = {"kind": values["kind"], "shape_id": revision.shape_id, "sha256": encoded.sha256}
     actor, action = (author, "label") if origin is None else (MACHINE, "move labels")
     append_audit(connection, actor, action, f"label_revision {revision_id}", detail | (origin or {}), now)
-    return committed, review, _after_commit(connection, committed, shape.collection_id, part_ids, now)
+    return (
+        committed,
+        added[0] if added else None,
+        _after_commit(connection, committed, shape.collection_id, part_ids, now),
+    )
 
 
 def _after_commit(

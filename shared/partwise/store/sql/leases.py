@@ -116,7 +116,7 @@ def renew(
         refuse_another(connection, person_id)
     values = {
         "expires_at": now + timedelta(seconds=lease_s),
-        "is_prefetched": known.is_prefetched if is_prefetched is None else is_prefetched,
+        "is_prefetched": known.is_prefetched and is_prefetched is not False,
     }
     statement = update(t.lease).where(t.lease.c.id == lease_id).values(values).returning(t.lease)
     return to_lease(connection.execute(statement).one())
@@ -233,6 +233,23 @@ def _lease(columns: Mapping[str, Any]) -> Lease:
 def active_of_shape(connection: Connection, shape_id: int) -> Sequence[Lease]:
     """The leases of a shape that have not ended."""
     return held_shapes(connection, [shape_id]).get(shape_id, [])
+
+
+def end_expired(connection: Connection, shape_id: int, now: datetime) -> tuple[list[Lease], list[NewEvent]]:
+    """Ends a shape's leases that were not renewed in time; those that go on, and the events.
+
+    Lock the labels of the shape before, and its places afterwards, as whoever ends a lease does.
+    """
+    held, events = list[Lease](), list[NewEvent]()
+    for known in active_of_shape(connection, shape_id):
+        locked = _locked(connection, known.id)
+        if locked.outcome is not None:
+            continue
+        if locked.expires_at < now:
+            events.append(end(connection, locked, LeaseOutcome.EXPIRED, now)[1])
+        else:
+            held.append(locked)
+    return held, events
 
 
 def _leased(row: Row[Any]) -> LeasedShape:

@@ -15,7 +15,7 @@ from partwise.store.sql import leases
 from partwise.store.sql.collections import append_audit
 from partwise.store.sql.dialect import batches, insert_for
 from partwise.store.sql.events import append_events
-from partwise.store.sql.shapes import refuse_unknown_shapes
+from partwise.store.sql.shapes import lock_labels, refuse_unknown_shapes
 
 UNRANKED = 1_000_000_000
 """Shapes that nothing ranked come after all others, in order of their ids."""
@@ -89,17 +89,22 @@ def close_places(connection: Connection, shape_id: int) -> None:
 
 def reopen(connection: Connection, shape_id: int, operator_id: int, for_person_id: int | None, now: datetime) -> None:
     operator = leases.person_name(connection, operator_id)
-    event = put_first(connection, shape_id, for_person_id, now)
+    events = put_first(connection, shape_id, for_person_id, now)
     detail = {"for_person_id": for_person_id}
     append_audit(connection, operator, "reopen shape", f"shape {shape_id}", detail, now)
-    append_events(connection, [event], now)
+    append_events(connection, events, now)
 
 
-def put_first(connection: Connection, shape_id: int, for_person_id: int | None, now: datetime) -> NewEvent:
-    """Another round for a shape, first in the queue."""
+def put_first(connection: Connection, shape_id: int, for_person_id: int | None, now: datetime) -> list[NewEvent]:
+    """Another round for a shape, first in the queue; the events are the caller's to add."""
     shape = refuse_unknown_shapes(connection, [shape_id])[shape_id]
     if for_person_id is not None:
         leases.person_name(connection, for_person_id)
+    lock_labels(connection, [shape_id])  # and with them claims by name
+    _, events = leases.end_expired(connection, shape_id, now)
+    place = t.queue_rank
+    # claims by rank lock a place first: what they have taken by now is among the leases below
+    connection.execute(select(place.c.slot).where(place.c.shape_id == shape_id).with_for_update()).all()
     if held := leases.active_of_shape(connection, shape_id):
         raise ConflictError(
             f"a shape goes back into the queue when nobody works on it but person {held[0].person_id} works on shape "
@@ -117,8 +122,8 @@ def put_first(connection: Connection, shape_id: int, for_person_id: int | None, 
         {**_place(shape_id, slot, shape.collection_id, FIRST, past + 1, n_slots, now), "person_id": for_person_id}
         for slot in range(n_slots)
     ]
-    connection.execute(insert_for(connection, t.queue_rank), rows)
-    return NewEvent(EventKind.QUEUE, shape.collection_id, {"shape_id": shape_id, "what": "reopened"})
+    connection.execute(insert_for(connection, place), rows)
+    return [*events, NewEvent(EventKind.QUEUE, shape.collection_id, {"shape_id": shape_id, "what": "reopened"})]
 
 
 def assign(

@@ -19,8 +19,8 @@ from partwise.store.sql import leases
 from partwise.store.sql.events import append_events
 from partwise.store.sql.honeypots import claim_honeypot
 from partwise.store.sql.places import collection_queue_settings, current_round, following_places
-from partwise.store.sql.shapes import refuse_unknown_shapes
-from partwise.store.sql.told import told_instead, told_of
+from partwise.store.sql.shapes import lock_labels, refuse_unknown_shapes
+from partwise.store.sql.told import TOLD, told_instead, told_of
 
 _TRIES = 20  # each fails only if someone took the very same place in the same moment
 
@@ -29,18 +29,16 @@ def claim_next(connection: Connection, claim: NewClaim, now: datetime) -> Lease 
     settings = collection_queue_settings(connection, claim.collection_id)
     leases.person_name(connection, claim.person_id, for_update=True)
     events = leases.expire(connection, claim.person_id, now)
-    prefetched = [
-        each
-        for each in leases.leases_of(connection, claim.person_id)
-        if each.is_prefetched and each.collection_id == claim.collection_id
-    ]
-    if prefetched:
-        taken: Lease | None = leases.renew(
-            connection, prefetched[0].id, claim.person_id, claim.lease_s, claim.is_prefetch, now
-        )
+    ahead = next((each for each in leases.leases_of(connection, claim.person_id) if each.is_prefetched), None)
+    taken: Lease | None
+    if ahead is not None and ahead.collection_id == claim.collection_id:
+        taken = leases.renew(connection, ahead.id, claim.person_id, claim.lease_s, claim.is_prefetch, now)
     else:
         if not claim.is_prefetch:
             leases.refuse_another(connection, claim.person_id)
+        elif ahead is not None:  # one is loaded ahead, of the collection that the person is at now
+            own = leases.own_active(connection, ahead.id, claim.person_id)
+            events.append(leases.end(connection, own, LeaseOutcome.RELEASED, now)[1])
         taken = None
         if claim.draw < settings.honeypot_share:
             place = _first_free_place(connection, claim, is_waiting=False)
@@ -88,9 +86,12 @@ def _first_place(
         past.c.shape_id == place.c.shape_id,
         or_(past.c.released_at.is_(None), is_over_for_them),
     )
+    is_taken = exists().where(  # nobody's place should be free, but one that was would be all that everybody is offered
+        past.c.shape_id == place.c.shape_id, past.c.slot == place.c.slot, past.c.released_at.is_(None)
+    )
     query = (
         select(place)
-        .where(place.c.collection_id == claim.collection_id, place.c.lease_id.is_(None), is_for_them, ~had)
+        .where(place.c.collection_id == claim.collection_id, place.c.lease_id.is_(None), is_for_them, ~had, ~is_taken)
         .order_by(place.c.rank, place.c.shape_id, place.c.slot)
         .limit(1)
         .with_for_update(skip_locked=not is_waiting, of=place)
@@ -107,20 +108,38 @@ def _take(
     *,
     is_prefetched: bool = False,
 ) -> Lease | None:
+    """A lease of a free, locked place."""
     values = {
-        **_told(connection, place),
+        **(_as_before(connection, place, person_id) or _as_ranked(connection, place)),
         "collection_id": place.collection_id,
         "shape_id": place.shape_id,
         "slot": place.slot,
         "round": place.round,
         "person_id": person_id,
-        "purpose": LeasePurpose.INDEPENDENT if place.n_slots > 1 else LeasePurpose.LABEL,
     }
     taken = leases.acquire(connection, values, lease_s, now, is_prefetched=is_prefetched)
     if taken is not None:
         is_it = and_(t.queue_rank.c.shape_id == place.shape_id, t.queue_rank.c.slot == place.slot)
         connection.execute(update(t.queue_rank).where(is_it).values(lease_id=taken.id))
     return taken
+
+
+def _as_before(connection: Connection, place: Row[Any], person_id: int) -> dict[str, Any] | None:
+    """Purpose and what is told, where this person's last lease of the shape was a blind check that they did not do: the
+    same again, as a check would be known by what changes when it is given back and claimed once more.
+    """
+    past = t.lease.c
+    is_theirs = and_(past.person_id == person_id, past.shape_id == place.shape_id, past.round == place.round)
+    columns = (past.purpose, past.outcome, *(past[name] for name in TOLD))
+    last = connection.execute(select(*columns).where(is_theirs).order_by(past.id.desc()).limit(1)).first()
+    if last is None or last.purpose != LeasePurpose.BLIND or last.outcome == LeaseOutcome.COMPLETED:
+        return None
+    return {"purpose": LeasePurpose.BLIND, **{name: last._mapping[name] for name in TOLD}}
+
+
+def _as_ranked(connection: Connection, place: Row[Any]) -> dict[str, Any]:
+    purpose = LeasePurpose.INDEPENDENT if place.n_slots > 1 else LeasePurpose.LABEL
+    return {"purpose": purpose, **_told(connection, place)}
 
 
 def _told(connection: Connection, place: Row[Any]) -> dict[str, Any]:
@@ -138,6 +157,7 @@ def claim_shape(connection: Connection, shape_id: int, person_id: int, lease_s: 
     check_lease_time(lease_s)
     leases.person_name(connection, person_id, for_update=True)
     refuse_unknown_shapes(connection, [shape_id])
+    lock_labels(connection, [shape_id])  # who reopens it sees this claim, or this one the place that is new
     events = leases.expire(connection, person_id, now)
     own = [each for each in leases.active_of_shape(connection, shape_id) if each.person_id == person_id]
     if own:

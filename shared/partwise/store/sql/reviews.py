@@ -14,12 +14,13 @@ from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterE
 from partwise.store import tables as t
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.records import EventKind, LabelRevision, NewEvent, ShapeState
-from partwise.store.reviews import NewReview, Review, ReviewOutcome, ReviewReason
+from partwise.store.reviews import FOR_REVIEWERS, NewReview, Review, ReviewOutcome, ReviewReason
 from partwise.store.sql.collections import append_audit, schema_version
 from partwise.store.sql.events import append_events
 from partwise.store.sql.facets import renew_facets
 from partwise.store.sql.leases import person_name
 from partwise.store.sql.places import close_places, put_first
+from partwise.store.sql.shapes import lock_labels, refuse_unknown_shapes
 from partwise.store.sql.tally import count_confirmed
 
 MACHINE = "partwise"
@@ -45,11 +46,6 @@ def add_review(connection: Connection, revision_id: int, new: NewReview, now: da
     return _review(connection.execute(insert(t.review).values(values).returning(t.review)).one())
 
 
-def lock_labels(connection: Connection, shape_id: int) -> None:
-    """Makes others who commit or review labels of the shape wait, so that which are the newest does not change."""
-    connection.execute(select(t.shape.c.id).where(t.shape.c.id == shape_id).with_for_update(key_share=True))
-
-
 def _refuse_unfit(connection: Connection, revision_id: int) -> Row[Any, Any, Any]:
     """The shape and collection of a revision that may be reviewed: the newest that is shown."""
     columns = (t.label_revision.c.shape_id, t.label_revision.c.kind, t.shape.c.collection_id)
@@ -61,19 +57,20 @@ def _refuse_unfit(connection: Connection, revision_id: int) -> Row[Any, Any, Any
     found = connection.execute(of_revision).first()
     if found is None:
         raise NotFoundError(f"there is no label revision {revision_id}")
-    lock_labels(connection, found.shape_id)
+    lock_labels(connection, [found.shape_id])
     kinds = [kind.value for kind in SHOWN_KINDS]
     if found.kind not in kinds:
         raise LabelError(f"only {' and '.join(kinds)} labels are reviewed but revision {revision_id} is {found.kind}")
-    newest = (
-        select(t.label_revision.c.id)
-        .where(t.label_revision.c.shape_id == found.shape_id, t.label_revision.c.kind.in_(kinds))
-        .order_by(t.label_revision.c.id.desc())
-        .limit(1)
-    )
-    if (head := connection.execute(newest).scalar_one()) != revision_id:
+    if (head := _head_id(connection, found.shape_id)) != revision_id:
         raise ConflictError(f"the newest labels are reviewed but revision {revision_id} gave way to {head}; name that")
     return found
+
+
+def _head_id(connection: Connection, shape_id: int) -> int | None:
+    """The newest revision of a shape that is shown."""
+    revision = t.label_revision.c
+    of_shape = select(func.max(revision.id)).where(revision.shape_id == shape_id)
+    return connection.execute(of_shape.where(revision.kind.in_([kind.value for kind in SHOWN_KINDS]))).scalar()
 
 
 def open_reviews(
@@ -109,7 +106,7 @@ def open_review(connection: Connection, revision_id: int, new: NewReview, now: d
 
 def accept_review(connection: Connection, review_id: int, person_id: int, now: datetime) -> Review:
     person = person_name(connection, person_id)
-    found = _open_review(connection, review_id)
+    found = locked_review(connection, review_id)
     review = _resolved(connection, review_id, person_id, ReviewOutcome.ACCEPTED, now)
     detail = {"review_id": review_id, "reason": found.reason.value, "shape_id": found.shape_id}
     append_audit(connection, person, "accept labels", f"label_revision {found.revision_id}", detail, now)
@@ -123,32 +120,92 @@ def accept_review(connection: Connection, review_id: int, person_id: int, now: d
     return review
 
 
+def accept_reviews(
+    connection: Connection, collection_id: int, reason: ReviewReason, person_id: int, limit: int, now: datetime
+) -> int:
+    if reason not in FOR_REVIEWERS:
+        raise ParameterError(f"labels that were sent back wait for better ones but reason is {reason}; name another")
+    schema_version(connection, collection_id)
+    person = person_name(connection, person_id)
+    waiting = select(t.review.c.id, t.review.c.shape_id).where(*_is_open(collection_id, (reason,)))
+    page = connection.execute(waiting.order_by(t.review.c.id).limit(limit)).all()
+    if not page:
+        return 0
+    lock_labels(connection, [row.shape_id for row in page])
+    schema_version(connection, collection_id, for_share=True)
+    is_it = t.review.c.id.in_([row.id for row in page]) & t.review.c.resolved_at.is_(None)
+    values = {"resolved_at": now, "resolved_by": person_id, "outcome": ReviewOutcome.ACCEPTED.value}
+    statement = update(t.review).where(is_it).values(values).returning(t.review.c.shape_id)
+    shape_ids = sorted(connection.execute(statement).scalars())
+    renew_facets(connection, shape_ids)
+    detail = {"reason": reason.value, "n_shapes": len(shape_ids), "shape_ids": shape_ids[:100]}
+    append_audit(connection, person, "accept labels", f"collection {collection_id}", detail, now)
+    payload = {"what": "labels accepted", "n_shapes": len(shape_ids)}
+    events = [NewEvent(EventKind.SHAPE, collection_id, payload)]
+    if n_confirmed := _n_confirmed(connection, shape_ids):
+        events = [*count_confirmed(connection, collection_id, now, n_confirmed), *events]
+    append_events(connection, events, now)
+    return len(shape_ids)
+
+
+def _n_confirmed(connection: Connection, shape_ids: Sequence[int]) -> int:
+    facet = t.shape_facet.c
+    query = select(func.count()).where(facet.shape_id.in_(shape_ids), facet.state == ShapeState.CONFIRMED.value)
+    return connection.execute(query).scalar_one()
+
+
 def reject_review(
     connection: Connection, review_id: int, person_id: int, note: str, *, for_author: bool, now: datetime
 ) -> Review:
+    found = locked_review(connection, review_id)
+    return _reject(connection, found, person_id, note, for_author=for_author, now=now)
+
+
+def reject_labels(
+    connection: Connection, shape_id: int, person_id: int, note: str, *, for_author: bool, now: datetime
+) -> Review:
+    refuse_unknown_shapes(connection, [shape_id])
+    lock_labels(connection, [shape_id])
+    opened = [review for review in reviews(connection, shape_id) if review.resolved_at is None]
+    if any(review.reason is ReviewReason.REWORK for review in opened):
+        raise ConflictError(f"labels are sent back once but those of shape {shape_id} were already; await better ones")
+    if opened:
+        review = opened[0]
+    else:
+        if (head_id := _head_id(connection, shape_id)) is None:
+            raise NotFoundError(f"shape {shape_id} has no labels to send back")
+        review = add_review(connection, head_id, NewReview(ReviewReason.CHECK), now)
+    return _reject(connection, review, person_id, note, for_author=for_author, now=now)
+
+
+def _reject(
+    connection: Connection, found: Review, person_id: int, note: str, *, for_author: bool, now: datetime
+) -> Review:
+    """Ends an open review whose shape is locked; the review of reason rework that follows it."""
     if not note.strip() or len(note) > _NOTE_LENGTH:
         raise ParameterError(
             f"labels are sent back with a note of at most {_NOTE_LENGTH} characters; say what is wrong"
         )
     person = person_name(connection, person_id)
-    found = _open_review(connection, review_id)
-    _resolved(connection, review_id, person_id, ReviewOutcome.REJECTED, now)
+    _resolved(connection, found.id, person_id, ReviewOutcome.REJECTED, now)
     author = select(t.label_revision.c.author_id).where(t.label_revision.c.id == found.revision_id)
     author_id = connection.execute(author).scalar_one()
     queued = put_first(connection, found.shape_id, author_id if for_author else None, now)
-    detail = {"note": note.strip(), "reviewer_id": person_id, "review_id": review_id, "reason": found.reason.value}
+    detail = {"note": note.strip(), "reviewer_id": person_id, "review_id": found.id, "reason": found.reason.value}
     rework = add_review(connection, found.revision_id, NewReview(ReviewReason.REWORK, detail), now)
     append_audit(connection, person, "reject labels", f"label_revision {found.revision_id}", detail, now)
-    append_events(connection, [queued, _renewed(connection, rework)], now)
+    append_events(connection, [*queued, _renewed(connection, rework)], now)
     return rework
 
 
-def _open_review(connection: Connection, review_id: int) -> Review:
-    """An open review, locked after its shape, as whoever commits labels does it."""
-    shape_id = connection.execute(select(t.review.c.shape_id).where(t.review.c.id == review_id)).scalar()
-    if shape_id is None:
+def locked_review(connection: Connection, review_id: int) -> Review:
+    """An open review, locked after its shape and collection, as whoever commits labels does it."""
+    about = select(t.review.c.shape_id, t.review.c.collection_id).where(t.review.c.id == review_id)
+    known = connection.execute(about).first()
+    if known is None:
         raise NotFoundError(f"there is no review {review_id}")
-    lock_labels(connection, shape_id)
+    lock_labels(connection, [known.shape_id])
+    schema_version(connection, known.collection_id, for_share=True)  # no parts change while labels are found right
     found = _review(connection.execute(select(t.review).where(t.review.c.id == review_id).with_for_update()).one())
     if found.outcome is not None:
         raise ConflictError(f"a review is resolved once but review {review_id} is {found.outcome} already")

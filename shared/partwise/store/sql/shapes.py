@@ -93,6 +93,15 @@ def refuse_unknown_shapes(connection: Connection, shape_ids: SizedIterable[int])
     return found
 
 
+def lock_labels(connection: Connection, shape_ids: Sequence[int]) -> None:
+    """Makes others who commit or review labels of the shapes, or put them into the queue, wait: which labels are the
+    newest and which are wanted does not change. In one order, so that two who lock many never wait for each other.
+    """
+    for some in batches(sorted(shape_ids)):
+        query = select(t.shape.c.id).where(t.shape.c.id.in_(some)).order_by(t.shape.c.id)
+        connection.execute(query.with_for_update(key_share=True)).all()
+
+
 def shape_by_key(connection: Connection, collection_id: int, source_key: str) -> Shape:
     found = _by_key(connection, collection_id, [source_key])
     if source_key not in found:

@@ -11,13 +11,13 @@ from partwise.store.sql.jobs import enqueue, job_event
 from partwise.store.sql.places import collection_queue_settings
 
 
-def count_confirmed(connection: Connection, collection_id: int, now: datetime) -> list[NewEvent]:
-    """Counts one more shape that can be trained on."""
+def count_confirmed(connection: Connection, collection_id: int, now: datetime, n_more: int = 1) -> list[NewEvent]:
+    """Counts more shapes that can be trained on."""
     train_after = collection_queue_settings(connection, collection_id).train_after
-    statement = insert_for(connection, t.training_tally).values(collection_id=collection_id, n_confirmed=1)
+    statement = insert_for(connection, t.training_tally).values(collection_id=collection_id, n_confirmed=n_more)
     n_confirmed = connection.execute(
         statement.on_conflict_do_update(
-            index_elements=["collection_id"], set_={"n_confirmed": t.training_tally.c.n_confirmed + 1}
+            index_elements=["collection_id"], set_={"n_confirmed": t.training_tally.c.n_confirmed + n_more}
         ).returning(t.training_tally.c.n_confirmed)
     ).scalar_one()
     if not train_after or n_confirmed < train_after:

@@ -10,6 +10,9 @@ from partwise.store import tables as t
 from partwise.store.records import DEFAULT_RANKING
 from partwise.store.sql.dialect import insert_for
 
+TOLD = ("rank", "score_name", "score", "model_version")
+"""Columns of a lease."""
+
 _COUNTED = 10_000  # places ahead; further behind nothing is told
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from partwise.labels.schema import PartSchema
 from partwise.store import records as r
 from partwise.store.engine import reading, writing
-from partwise.store.sql import collections
+from partwise.store.sql import collections, part_changes
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -42,7 +42,9 @@ class SqlCollectionCatalog(SqlBase):
         parent_id: int | None = None,
     ) -> PartSchema:
         with writing(self._engine) as connection:
-            return collections.add_part(connection, collection_id, name, colour, gloss, parent_id)
+            schema = part_changes.add_part(connection, collection_id, name, colour, gloss, parent_id, self._clock())
+        self._renew_states(collection_id)
+        return schema
 
     def update_part(
         self,
@@ -55,11 +57,20 @@ class SqlCollectionCatalog(SqlBase):
         parent_id: int | None = None,
     ) -> PartSchema:
         with writing(self._engine) as connection:
-            return collections.update_part(connection, collection_id, part_id, name, colour, gloss, parent_id)
+            return part_changes.update_part(connection, collection_id, part_id, name, colour, gloss, parent_id)
 
     def remove_part(self, collection_id: int, part_id: int) -> PartSchema:
         with writing(self._engine) as connection:
-            return collections.remove_part(connection, collection_id, part_id)
+            schema = part_changes.remove_part(connection, collection_id, part_id, self._clock())
+        self._renew_states(collection_id)
+        return schema
+
+    def _renew_states(self, collection_id: int) -> None:
+        """Of more shapes than were renewed with the change: a transaction each time, as others wait meanwhile."""
+        is_more = True
+        while is_more:
+            with writing(self._engine) as connection:
+                is_more = part_changes.renew_states(connection, collection_id)
 
     def add_person(self, name: str) -> r.Person:
         with writing(self._engine) as connection:

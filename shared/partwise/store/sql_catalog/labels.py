@@ -10,7 +10,7 @@ from partwise.store import records as r
 from partwise.store.catalog import SHOWN_KINDS
 from partwise.store.engine import reading, writing
 from partwise.store.reviews import NewReview, Review, ReviewReason
-from partwise.store.sql import efforts, labels, reviews
+from partwise.store.sql import choices, efforts, labels, reviews
 from partwise.store.sql_catalog.base import SqlBase
 
 
@@ -92,8 +92,22 @@ class SqlLabelCatalog(SqlBase):
         with writing(self._engine) as connection:
             return reviews.accept_review(connection, review_id, person_id, self._clock())
 
+    def accept_reviews(self, collection_id: int, reason: ReviewReason, person_id: int, *, limit: int = 1000) -> int:
+        with writing(self._engine) as connection:
+            return reviews.accept_reviews(connection, collection_id, reason, person_id, limit, self._clock())
+
     def reject_review(self, review_id: int, person_id: int, note: str, *, for_author: bool = False) -> Review:
         with writing(self._engine) as connection:
             return reviews.reject_review(
                 connection, review_id, person_id, note, for_author=for_author, now=self._clock()
             )
+
+    def reject_labels(self, shape_id: int, person_id: int, note: str, *, for_author: bool = False) -> Review:
+        with writing(self._engine) as connection:
+            return reviews.reject_labels(
+                connection, shape_id, person_id, note, for_author=for_author, now=self._clock()
+            )
+
+    def choose_answer(self, review_id: int, answer_id: int, person_id: int) -> r.LabelRevision:
+        with writing(self._engine) as connection:
+            return choices.choose_answer(connection, review_id, answer_id, person_id, self._clock())

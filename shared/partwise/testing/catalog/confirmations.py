@@ -12,6 +12,7 @@ from partwise.store.catalog import Catalog
 from partwise.store.records import (
     Closeness,
     Collection,
+    Confirmation,
     DraftOutcome,
     Effort,
     EventKind,
@@ -26,7 +27,7 @@ from partwise.store.records import (
     RevisionKind,
     ShapeState,
 )
-from partwise.store.reviews import ReviewOutcome, ReviewReason
+from partwise.store.reviews import NewReview, ReviewOutcome, ReviewReason
 from partwise.testing.catalog.samples import (
     blank_draft,
     claim,
@@ -49,6 +50,13 @@ def _two_leased(catalog: Catalog, **settings: object) -> tuple[Collection, list[
     catalog.update_collection_settings(collection.id, {"labels_per_shape": 2, **settings})
     catalog.fill_queue(collection.id)
     return collection, [claim(catalog, collection, catalog.add_person(name)) for name in ("ann", "bob")]
+
+
+def _disputed(catalog: Catalog) -> tuple[Collection, Confirmation, Confirmation]:
+    """A shape in which ann and bob see different parts."""
+    collection, (first, second) = _two_leased(catalog)
+    mine = confirm(catalog, first, [1] * 6)
+    return collection, mine, confirm(catalog, second, [2] * 6, NewConsensus((mine.answer_id or 0,), FAR, None))
 
 
 class ConfirmationConformance:
@@ -239,6 +247,78 @@ class ConfirmationConformance:
         with raises(ConflictError, "medoid"):
             catalog.confirm_draft(replace(new, consensus=NewConsensus((mine.answer_id,), CLOSE, 99)))
         assert catalog.answer_labels(mine.answer_id).tolist() == [1, 1, 1, 2, 2, 2]
+
+    def test_a_part_that_labels_may_yet_bring_is_not_removed(self, catalog: Catalog) -> None:
+        collection, (first, second) = _two_leased(catalog)
+        mine = confirm(catalog, first, [2] * 6)
+        with raises(ConflictError, "back", "1 shape that is still being compared"):
+            catalog.remove_part(collection.id, 2)
+        assert mine.answer_id is not None
+        theirs = confirm(catalog, second, [1] * 6, NewConsensus((mine.answer_id,), FAR, None))
+        with raises(ConflictError, "back", "1 shape that is still being compared"):
+            catalog.remove_part(collection.id, 2)
+        assert theirs.review_id is not None
+        catalog.accept_review(theirs.review_id, first.person_id)
+        assert catalog.remove_part(collection.id, 2).ids == (1,)
+
+    def test_independent_labels_have_no_part_that_is_gone(self, catalog: Catalog) -> None:
+        collection, (first, _) = _two_leased(catalog)
+        catalog.remove_part(collection.id, 2)
+        with raises(LabelError, "part id 2", "schema version 2"):
+            confirm(catalog, first, [2] * 6)
+        assert catalog.answers(first.shape_id) == []
+
+    def test_labels_that_agree_under_older_parts_are_looked_at(self, catalog: Catalog) -> None:
+        collection, (first, second) = _two_leased(catalog)
+        mine = confirm(catalog, first)
+        catalog.add_part(collection.id, "lid")
+        assert mine.answer_id is not None
+        theirs = confirm(catalog, second, consensus=NewConsensus((mine.answer_id,), CLOSE, mine.answer_id))
+        (review,) = catalog.open_reviews(collection.id)
+        assert (review.id, review.revision_id) == (theirs.review_id, theirs.revision_id)
+        assert (review.reason, review.detail) == (ReviewReason.SCHEMA, {"version": 2})
+
+    def test_a_reviewer_chooses_whose_labels_become_the_shapes(self, catalog: Catalog) -> None:
+        collection, mine, theirs = _disputed(catalog)
+        assert theirs.review_id is not None
+        assert mine.answer_id is not None
+        rita = catalog.add_person("rita")
+        chosen = catalog.choose_answer(theirs.review_id, mine.answer_id, rita.id)
+        assert (chosen.author_id, chosen.parent_id) == (catalog.get_person("ann").id, theirs.revision_id)
+        assert catalog.head_revision(chosen.shape_id) == chosen
+        assert catalog.open_reviews(collection.id) == []
+        entry = catalog.audit()[-1]
+        assert (entry.actor, entry.action, entry.detail["answer_id"]) == ("rita", "choose labels", mine.answer_id)
+        with raises(ConflictError, "resolved once"):
+            catalog.choose_answer(theirs.review_id, mine.answer_id, rita.id)
+
+    def test_labels_chosen_under_older_parts_are_looked_at(self, catalog: Catalog) -> None:
+        collection, mine, theirs = _disputed(catalog)
+        catalog.add_part(collection.id, "lid")
+        assert theirs.review_id is not None
+        assert mine.answer_id is not None
+        chosen = catalog.choose_answer(theirs.review_id, mine.answer_id, catalog.add_person("rita").id)
+        (review,) = catalog.open_reviews(collection.id)
+        assert (review.reason, review.revision_id) == (ReviewReason.SCHEMA, chosen.id)
+
+    def test_only_what_a_review_compares_is_chosen(self, catalog: Catalog) -> None:
+        collection, mine, theirs = _disputed(catalog)
+        assert theirs.review_id is not None
+        assert mine.answer_id is not None
+        rita = catalog.add_person("rita")
+        catalog.reject_review(theirs.review_id, rita.id, "both are wrong")
+        again = [claim(catalog, collection, catalog.get_person(name)) for name in ("ann", "bob")]
+        first = confirm(catalog, again[0], [1] * 6)
+        assert first.answer_id is not None
+        second = confirm(catalog, again[1], [2] * 6, NewConsensus((first.answer_id,), FAR, None))
+        assert second.review_id is not None
+        before = catalog.audit()
+        with raises(NotFoundError, f"no labels {mine.answer_id} to choose"):
+            catalog.choose_answer(second.review_id, mine.answer_id, rita.id)
+        check = catalog.add_review(second.revision_id or 0, NewReview(ReviewReason.CHECK))
+        with raises(ConflictError, "reason check"):
+            catalog.choose_answer(check.id, first.answer_id, rita.id)
+        assert catalog.audit() == before
 
     def test_blind_labels_are_measured_and_never_shown(self, catalog: Catalog) -> None:
         collection, (known,) = ready_shapes(catalog, 1)

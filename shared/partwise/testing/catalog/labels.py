@@ -85,12 +85,19 @@ class LabelConformance:
             catalog.add_revision(dataclasses.replace(revision, parent_id=other.id))
 
     def test_labels_follow_the_version_they_name(self, catalog: Catalog) -> None:
-        revision = _revision(catalog, labels=np.full(N_FACES, 2))
+        revision = _revision(catalog, labels=np.full(N_FACES, 1))
         collection = catalog.get_collection("chairs")
-        catalog.remove_part(collection.id, 2)  # as nobody uses it yet
+        catalog.add_part(collection.id, "leg")
         assert catalog.add_revision(revision).schema_version == 1
-        with raises(LabelError, "2"):
-            catalog.add_revision(dataclasses.replace(revision, schema_version=2))
+        with raises(LabelError, "3"):
+            catalog.add_revision(dataclasses.replace(revision, labels=np.full(N_FACES, 3)))
+
+    def test_no_labels_come_in_with_a_part_that_is_gone(self, catalog: Catalog) -> None:
+        revision = _revision(catalog, labels=np.full(N_FACES, 2))
+        catalog.remove_part(catalog.get_collection("chairs").id, 2)
+        with raises(LabelError, "part id 2", "schema version 2"):
+            catalog.add_revision(revision)
+        assert catalog.add_revision(dataclasses.replace(revision, kind=RevisionKind.REFERENCE)).schema_version == 1
 
     def test_revisions_are_listed_oldest_first(self, catalog: Catalog) -> None:
         revision = _revision(catalog)

@@ -1,11 +1,11 @@
 """Conformance: reviews of labels."""
 # ruff: noqa: S101 # a test suite asserts
 
-from partwise.errors import ConflictError, LabelError, NotFoundError
+from partwise.errors import ConflictError, LabelError, NotFoundError, ParameterError
 from partwise.store.catalog import Catalog
-from partwise.store.records import LabelRevision, RevisionKind, ShapeState
+from partwise.store.records import Collection, EventKind, JobKind, LabelRevision, RevisionKind, ShapeState
 from partwise.store.reviews import NewReview, ReviewOutcome, ReviewReason
-from partwise.testing.catalog.samples import add_collection, label, move, publish_mesh
+from partwise.testing.catalog.samples import add_collection, label, move, publish_mesh, ready_shapes
 from partwise.testing.expect import raises
 
 _MAP_BACK = NewReview(ReviewReason.MAP_BACK, {"agreement": 0.9})
@@ -139,3 +139,130 @@ class ReviewConformance:
         counts = {reason: catalog.count_open_reviews(collection.id, reasons=(reason,)) for reason in ReviewReason}
         assert counts == {reason: sum(each.reason is reason for each in made) for reason in ReviewReason}
         assert catalog.open_reviews(collection.id, reasons=()) == []
+
+    def test_another_part_has_older_labels_looked_at(self, catalog: Catalog) -> None:
+        collection, heads = _labelled_shapes(catalog, 2)
+        add_collection(catalog, 1, "mugs")
+        catalog.add_part(collection.id, "lid")
+        found = catalog.open_reviews(collection.id)
+        assert [(each.revision_id, each.reason, each.detail) for each in found] == [
+            (head.id, ReviewReason.SCHEMA, {"version": 2}) for head in heads
+        ]
+        assert {row.state for row in catalog.list_shapes(collection.id)} == {ShapeState.REVIEW}
+        assert catalog.labelled_shapes(collection.id, leave_out_reviews=True) == []
+        event = catalog.events(after=0)[-1]
+        assert (event.kind, event.payload) == (EventKind.SHAPE, {"what": "parts changed", "schema_version": 2})
+
+    def test_labels_that_are_right_under_the_present_parts_are_learned_from_again(self, catalog: Catalog) -> None:
+        collection, heads = _labelled_shapes(catalog, 2)
+        catalog.add_part(collection.id, "lid")
+        review = catalog.open_reviews(collection.id)[0]
+        catalog.accept_review(review.id, heads[0].author_id)
+        assert catalog.labelled_shapes(collection.id, leave_out_reviews=True) == heads[:1]
+        states = [row.state for row in catalog.list_shapes(collection.id)]
+        assert states == [ShapeState.CONFIRMED, ShapeState.REVIEW]
+
+    def test_one_review_stays_for_all_parts_that_have_changed(self, catalog: Catalog) -> None:
+        collection, heads = _labelled_shapes(catalog, 2)
+        catalog.add_part(collection.id, "lid")
+        first, second = catalog.open_reviews(collection.id)
+        catalog.accept_review(first.id, heads[0].author_id)
+        catalog.remove_part(collection.id, 3)
+        found = [(each.id, each.revision_id, each.detail) for each in catalog.open_reviews(collection.id)]
+        assert found[0] == (second.id, heads[1].id, {"version": 3})
+        assert [each[1:] for each in found[1:]] == [(heads[0].id, {"version": 3})]
+
+    def test_other_words_and_colours_leave_labels_as_they_are(self, catalog: Catalog) -> None:
+        collection, heads = _labelled_shapes(catalog, 1)
+        catalog.update_part(collection.id, 1, name="cushion", colour="#000000", gloss="soft", parent_id=2)
+        assert catalog.open_reviews(collection.id) == []
+        assert catalog.labelled_shapes(collection.id, leave_out_reviews=True) == heads
+
+    def test_reference_labels_are_not_looked_at_when_parts_change(self, catalog: Catalog) -> None:
+        collection, _ = _labelled_shapes(catalog, 1, RevisionKind.REFERENCE)
+        catalog.add_part(collection.id, "lid")
+        assert catalog.open_reviews(collection.id) == []
+
+    def test_labels_of_older_parts_that_come_late_are_looked_at(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = add_collection(catalog, 1)
+        publish_mesh(catalog, shape_id)
+        catalog.add_part(collection.id, "lid")
+        late = label(catalog, shape_id)
+        (review,) = catalog.open_reviews(collection.id)
+        assert (review.revision_id, review.reason, review.detail) == (late.id, ReviewReason.SCHEMA, {"version": 2})
+
+    def test_accepted_labels_are_not_looked_at_again_when_they_move(self, catalog: Catalog) -> None:
+        collection, (head,) = _labelled_shapes(catalog, 1)
+        catalog.add_part(collection.id, "lid")
+        catalog.accept_review(catalog.open_reviews(collection.id)[0].id, head.author_id)
+        publish_mesh(catalog, head.shape_id, 2)
+        move(catalog, head, 2)
+        assert catalog.open_reviews(collection.id) == []
+
+    def test_what_waits_for_one_reason_is_accepted_at_once(self, catalog: Catalog) -> None:
+        collection, heads = _labelled_shapes(catalog, 4)
+        catalog.update_collection_settings(collection.id, {"train_after": 3})
+        check = catalog.add_review(heads[0].id, NewReview(ReviewReason.CHECK))
+        catalog.add_part(collection.id, "lid")
+        rita = catalog.add_person("rita")
+        assert [catalog.accept_reviews(collection.id, ReviewReason.SCHEMA, rita.id, limit=3) for _ in range(3)] == [
+            3,
+            1,
+            0,
+        ]
+        assert catalog.open_reviews(collection.id) == [check]
+        assert catalog.labelled_shapes(collection.id, leave_out_reviews=True) == heads[1:]
+        assert [row.state for row in catalog.list_shapes(collection.id)] == [ShapeState.REVIEW] + 3 * [
+            ShapeState.CONFIRMED
+        ]
+        resolved = catalog.reviews(heads[1].shape_id)[0]
+        assert (resolved.outcome, resolved.resolved_by) == (ReviewOutcome.ACCEPTED, rita.id)
+        assert [job.kind for job in catalog.jobs(collection.id)] == [JobKind.TRAIN]
+        entry = catalog.audit()[-1]
+        assert (entry.actor, entry.action, entry.detail["n_shapes"]) == ("rita", "accept labels", 1)
+
+    def test_what_was_sent_back_is_not_accepted_at_once(self, catalog: Catalog) -> None:
+        collection, (head,) = _labelled_shapes(catalog, 1)
+        with raises(ParameterError, "rework"):
+            catalog.accept_reviews(collection.id, ReviewReason.REWORK, head.author_id)
+        with raises(NotFoundError, "99"):
+            catalog.accept_reviews(99, ReviewReason.SCHEMA, head.author_id)
+        with raises(NotFoundError, "99"):
+            catalog.accept_reviews(collection.id, ReviewReason.SCHEMA, 99)
+
+    def test_labels_without_a_review_are_sent_back(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        head = label(catalog, shape_id)
+        rework = catalog.reject_labels(shape_id, head.author_id, " the back is missing ")
+        assert (rework.reason, rework.detail["note"]) == (ReviewReason.REWORK, "the back is missing")
+        assert [each.reason for each in catalog.reviews(shape_id)] == [ReviewReason.CHECK, ReviewReason.REWORK]
+        assert catalog.queue_depth(collection.id).n_free == 1
+        with raises(ConflictError, "sent back once"):
+            catalog.reject_labels(shape_id, head.author_id, "still")
+
+    def test_a_refused_rejection_leaves_labels_as_they_were(self, catalog: Catalog) -> None:
+        collection, (shape_id,) = ready_shapes(catalog, 1)
+        with raises(NotFoundError, "no labels"):
+            catalog.reject_labels(shape_id, catalog.add_person("ann").id, "no")
+        head = label(catalog, shape_id)
+        before = catalog.event_bounds()
+        with raises(ParameterError, "note"):
+            catalog.reject_labels(shape_id, head.author_id, "  ")
+        with raises(NotFoundError, "99"):
+            catalog.reject_labels(99, head.author_id, "no")
+        assert (catalog.reviews(shape_id), catalog.event_bounds()) == ([], before)
+        catalog.claim_shape(shape_id, head.author_id, 60)
+        with raises(ConflictError, "works on shape"):
+            catalog.reject_labels(shape_id, head.author_id, "no")
+        assert catalog.reviews(shape_id) == []
+        assert catalog.labelled_shapes(collection.id, leave_out_reviews=True) == [head]
+
+
+def _labelled_shapes(
+    catalog: Catalog, n_shapes: int, kind: RevisionKind = RevisionKind.HUMAN
+) -> tuple[Collection, list[LabelRevision]]:
+    """A collection whose shapes are all labelled, and their labels."""
+    collection, shape_ids = add_collection(catalog, n_shapes)
+    for shape_id in shape_ids:
+        publish_mesh(catalog, shape_id)
+    return collection, [label(catalog, shape_id, kind) for shape_id in shape_ids]
