@@ -9,6 +9,7 @@ from fastapi import Request, Response
 from safetensors.numpy import save
 
 from partwise_service.compression import MIN_BYTES, accepted_coding, allowed_codings, compressed
+from partwise_service.response_headers import ETAG
 
 SAFETENSORS = "application/vnd.safetensors"
 IMMUTABLE = "private, max-age=31536000, immutable"
@@ -17,12 +18,12 @@ REVALIDATE = "private, no-cache"
 """Of what may change: the caller keeps it and asks whether its tag still holds."""
 
 SAFETENSORS_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"content": {SAFETENSORS: {"schema": {"type": "string", "format": "binary"}}}},
-    304: {"description": "What the caller holds is current"},
+    200: {"content": {SAFETENSORS: {"schema": {"type": "string", "format": "binary"}}}, "headers": ETAG},
+    304: {"description": "What the caller holds is current", "headers": ETAG},
 }
 PNG_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"image/png": {"schema": {"type": "string", "format": "binary"}}}},
-    304: {"description": "What the caller holds is current"},
+    200: {"content": {"image/png": {"schema": {"type": "string", "format": "binary"}}}, "headers": ETAG},
+    304: {"description": "What the caller holds is current", "headers": ETAG},
 }
 
 

@@ -1,14 +1,26 @@
-"""The OpenAPI document, with every problem that every operation may answer with."""
+"""The OpenAPI document, with every problem that every operation may answer with, and what tags and retries need.
 
-from collections.abc import Sequence
+A route says under `responses` what its problems tell beyond the common members: `{409: {"model": EndedLease}}`.
+"""
+
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
 from partwise_service.problems import MEDIA_TYPE, ProblemKind
+from partwise_service.response_headers import RETRY_AFTER, WWW_AUTHENTICATE, Headers
 
 _METHODS = frozenset({"get", "put", "post", "delete", "patch"})
+_HEADERS: Mapping[int, Headers] = {401: WWW_AUTHENTICATE, 429: RETRY_AFTER, 503: RETRY_AFTER}
+_IF_NONE_MATCH = {
+    "name": "If-None-Match",
+    "in": "header",
+    "required": False,
+    "schema": {"type": "string"},
+    "description": "Tags of what the caller holds, as `ETag` told them: 304 if one is current.",
+}
 _PROBLEM_FIELDS = {
     "type": {"type": "string", "format": "uri"},
     "title": {"type": "string", "description": "What kind of problem it is, in words."},
@@ -52,13 +64,30 @@ def _with_problems(document: dict[str, Any]) -> dict[str, Any]:
         components.setdefault("responses", {})[f"Problem{status}"] = {
             "description": " or ".join(kind.title for kind in kinds),
             "content": {MEDIA_TYPE: {"schema": {"$ref": f"#/components/schemas/Problem{status}"}}},
+            "headers": _HEADERS.get(status, {}),
         }
     for operations in document.get("paths", {}).values():
         for method, operation in operations.items():
             if method in _METHODS:
                 responses = operation.setdefault("responses", {})
-                responses.update({str(s): {"$ref": f"#/components/responses/Problem{s}"} for s in by_status})
+                responses.update({str(status): _problem(status, responses.get(str(status))) for status in by_status})
+                if "304" in responses:
+                    operation.setdefault("parameters", []).append(_IF_NONE_MATCH)
     return document
+
+
+def _problem(status: int, own: Mapping[str, Any] | None) -> dict[str, Any]:
+    """The response of an operation to a problem: the common one, or with members of its own, where the route has some.
+
+    own : what the framework made of the route's `responses`. What it adds by itself of invalid requests is ours to say.
+    """
+    common = f"#/components/responses/Problem{status}"
+    extension = None if own is None else own.get("content", {}).get("application/json", {}).get("schema")
+    if extension is None or extension.get("$ref", "").endswith("/HTTPValidationError"):
+        return {"$ref": common}
+    plain = {"$ref": f"#/components/schemas/Problem{status}"}
+    schema = {"anyOf": [{"allOf": [plain, extension]}, plain]}
+    return {"description": own["description"], "content": {MEDIA_TYPE: {"schema": schema}}}
 
 
 def _schema(status: int, kinds: Sequence[ProblemKind]) -> dict[str, Any]:

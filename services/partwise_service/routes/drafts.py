@@ -1,7 +1,7 @@
 """/drafts: work in progress. A stroke is acknowledged once it is committed, and is on record once."""
 
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -20,6 +20,7 @@ from partwise_service.dependencies import Annotator, CatalogDep, ScopedShape, Se
 from partwise_service.held_leases import visible_lease
 from partwise_service.ownership import visible_row
 from partwise_service.problems import ProblemError, ProblemKind
+from partwise_service.response_headers import OF_DRAFT
 from partwise_service.schemas.base import RowId
 from partwise_service.schemas.drafts import (
     MAX_SEQUENCE,
@@ -28,19 +29,22 @@ from partwise_service.schemas.drafts import (
     ConfirmLabels,
     DraftOut,
     DraftsOut,
+    DraftState,
     NewDraftRequest,
+    RefusedStrokes,
+    StaleDraft,
+    StaleState,
     StrokeOut,
     Strokes,
     StrokesOut,
 )
+from partwise_service.schemas.strokes import MAX_SEEDS
 from partwise_service.security.identity import Identity
 from partwise_service.waiting import with_draft_labels
 
 MAX_PAGE = 5_000
 _TAIL = 1_000
 """Strokes of the server's side in a refusal; a client that is further behind pages through the log."""
-MAX_SEEDS = 10_000
-"""Of a stroke that paints."""
 MAX_STROKES_OF_DRAFT = 100_000
 router = APIRouter(route_class=AnswerRoute, tags=["drafts"])
 IfMatch = Annotated[
@@ -48,7 +52,7 @@ IfMatch = Annotated[
 ]
 
 
-@router.post("/leases/{lease_id}/draft")
+@router.post("/leases/{lease_id}/draft", responses=OF_DRAFT)
 @waits_for_arrays
 def open_draft(
     caller: Annotator, workspace: WorkspaceDep, response: Response, lease_id: RowId, new: NewDraftRequest
@@ -68,7 +72,7 @@ def list_my_drafts(caller: Annotator, catalog: CatalogDep) -> DraftsOut:
     return DraftsOut(items=[DraftOut.of(draft) for draft in found])
 
 
-@router.get("/shapes/{shape_id}/draft")
+@router.get("/shapes/{shape_id}/draft", responses=OF_DRAFT)
 def show_last_draft(caller: Annotator, shape: ScopedShape, catalog: CatalogDep, response: Response) -> DraftOut:
     """The caller's last draft of a shape, open or not."""
     own = [draft for draft in catalog.drafts_of_shape(shape.id) if draft.person_id == caller.person_id]
@@ -77,13 +81,13 @@ def show_last_draft(caller: Annotator, shape: ScopedShape, catalog: CatalogDep, 
     return _tagged(response, own[-1])
 
 
-@router.get("/drafts/{draft_id}")
+@router.get("/drafts/{draft_id}", responses=OF_DRAFT)
 def show_draft(caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId) -> DraftOut:
     """A draft of the caller's own, or of anybody's for operators."""
     return _tagged(response, visible_draft(catalog, caller, draft_id))
 
 
-@router.get("/drafts/{draft_id}/strokes")
+@router.get("/drafts/{draft_id}/strokes", responses=OF_DRAFT)
 def list_strokes(
     caller: Annotator,
     catalog: CatalogDep,
@@ -119,7 +123,7 @@ async def get_draft_labels(request: Request, caller: Annotator, service: Service
     return await with_draft_labels(request, service, caller.person_id, read, answer)
 
 
-@router.post("/drafts/{draft_id}/strokes")
+@router.post("/drafts/{draft_id}/strokes", responses=OF_DRAFT | {409: {"model": RefusedStrokes}})
 def append_strokes(
     caller: Annotator, service: ServiceDep, response: Response, draft_id: RowId, sent: Strokes
 ) -> DraftOut:
@@ -137,10 +141,12 @@ def append_strokes(
     try:
         return _tagged(response, catalog.append_strokes(draft_id, caller.person_id, sent.expected_sequence, strokes))
     except StaleDraftError as error:
-        raise both_sides(catalog, error, sent.expected_sequence, {"refused": sent.strokes}) from error
+        sides = _on_record(catalog, error, sent.expected_sequence)
+        told = RefusedStrokes(state=sides.state, recorded=sides.recorded, refused=sent.strokes)
+        raise _conflict(error, told) from error
 
 
-@router.post("/drafts/{draft_id}/confirm", response_model=Confirmed)
+@router.post("/drafts/{draft_id}/confirm", response_model=Confirmed, responses={409: {"model": StaleDraft}})
 async def confirm_draft(
     request: Request,
     caller: Annotator,
@@ -159,13 +165,13 @@ async def confirm_draft(
         try:
             done = confirm_labels(workspace, work, labels, caller.person_id, n_strokes, confirming.labels_sha256)
         except StaleDraftError as error:
-            raise both_sides(workspace.catalog, error, n_strokes, {}) from error
+            raise stale_problem(workspace.catalog, error, n_strokes) from error
         return json_answer(Confirmed.of(done))
 
     return await with_draft_labels(request, service, caller.person_id, read, answer)
 
 
-@router.post("/drafts/{draft_id}/acknowledge")
+@router.post("/drafts/{draft_id}/acknowledge", responses=OF_DRAFT | {409: {"model": StaleState}})
 def acknowledge_labels(
     caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId, seen: Acknowledgement
 ) -> DraftOut:
@@ -174,10 +180,10 @@ def acknowledge_labels(
     try:
         return _tagged(response, catalog.acknowledge_head(draft.id, caller.person_id, seen.revision_id))
     except StaleDraftError as error:
-        raise ProblemError(ProblemKind.CONFLICT, str(error), {"state": dict(error.state)}) from error
+        raise _conflict(error, StaleState(state=_state(error))) from error
 
 
-@router.post("/drafts/{draft_id}/discard")
+@router.post("/drafts/{draft_id}/discard", responses=OF_DRAFT)
 def discard_draft(caller: Annotator, catalog: CatalogDep, response: Response, draft_id: RowId) -> DraftOut:
     """Close a draft without labels; its strokes stay on record."""
     draft = visible_draft(catalog, caller, draft_id)
@@ -221,11 +227,19 @@ def _tagged(response: Response, draft: Draft) -> DraftOut:
     return DraftOut.of(draft)
 
 
-def both_sides(
-    catalog: Catalog, error: StaleDraftError, known_to_caller: int, theirs: Mapping[str, Any]
-) -> ProblemError:
-    """The refusal with what is on record beside what was sent."""
+def stale_problem(catalog: Catalog, error: StaleDraftError, known_to_caller: int) -> ProblemError:
+    """The refusal with what is on record; the caller knows of so many strokes."""
+    return _conflict(error, _on_record(catalog, error, known_to_caller))
+
+
+def _on_record(catalog: Catalog, error: StaleDraftError, known_to_caller: int) -> StaleDraft:
     tail = catalog.strokes(error.state["draft_id"], after=known_to_caller - 1, limit=_TAIL)
-    recorded = [StrokeOut.of(stroke).model_dump(mode="json") for stroke in tail]
-    extensions = {"state": dict(error.state), "recorded": recorded, **theirs}
-    return ProblemError(ProblemKind.CONFLICT, str(error), extensions)
+    return StaleDraft(state=_state(error), recorded=[StrokeOut.of(stroke) for stroke in tail])
+
+
+def _state(error: StaleDraftError) -> DraftState:
+    return DraftState(**error.state)
+
+
+def _conflict(error: StaleDraftError, told: StaleState) -> ProblemError:
+    return ProblemError(ProblemKind.CONFLICT, str(error), told.model_dump(mode="json"))

@@ -19,10 +19,10 @@ from partwise_service.dependencies import (
 )
 from partwise_service.held_leases import leases_out, visible_lease
 from partwise_service.problems import ProblemError, ProblemKind
-from partwise_service.routes.drafts import both_sides
+from partwise_service.routes.drafts import stale_problem
 from partwise_service.schemas.base import MAX_ROW_ID, Page, RowId
-from partwise_service.schemas.drafts import Confirm, Confirmed
-from partwise_service.schemas.queue import LeaseOut, LeasesOut, Renewal, Skip
+from partwise_service.schemas.drafts import Confirm, Confirmed, StaleDraft
+from partwise_service.schemas.queue import EndedLease, LeaseOut, LeasesOut, Renewal, Skip
 from partwise_service.security.identity import Identity
 from partwise_service.waiting import with_draft_labels
 
@@ -51,7 +51,7 @@ def list_leases(
     return Page(items=leases_out(catalog, found, caller), next=next_after)
 
 
-@router.post("/leases/{lease_id}/heartbeat")
+@router.post("/leases/{lease_id}/heartbeat", responses={409: {"model": EndedLease}})
 def renew_lease(
     caller: Annotator, service: ServiceDep, catalog: CatalogDep, lease_id: RowId, renewal: Renewal
 ) -> LeaseOut:
@@ -65,8 +65,8 @@ def renew_lease(
             lease_id, caller.person_id, service.settings.lease_s, is_prefetched=renewal.is_prefetched
         )
     except ConflictError as error:
-        outcome = catalog.lease(lease_id).outcome
-        raise ProblemError(ProblemKind.CONFLICT, str(error), {"outcome": outcome and outcome.value}) from error
+        ended = EndedLease(outcome=catalog.lease(lease_id).outcome)
+        raise ProblemError(ProblemKind.CONFLICT, str(error), ended.model_dump(mode="json")) from error
     return leases_out(catalog, [renewed], caller)[0]
 
 
@@ -84,7 +84,7 @@ def skip_lease(caller: Annotator, catalog: CatalogDep, lease_id: RowId, skip: Sk
     return leases_out(catalog, [catalog.skip_lease(lease_id, caller.person_id, skip.reason)], caller)[0]
 
 
-@router.post("/leases/{lease_id}/complete", response_model=Confirmed)
+@router.post("/leases/{lease_id}/complete", response_model=Confirmed, responses={409: {"model": StaleDraft}})
 async def complete_lease(
     request: Request, caller: Annotator, service: ServiceDep, lease_id: RowId, confirming: Confirm
 ) -> Response:
@@ -101,7 +101,7 @@ async def complete_lease(
         try:
             done = confirm_labels(workspace, work, labels, caller.person_id, n_strokes, seen)
         except StaleDraftError as error:
-            raise both_sides(workspace.catalog, error, n_strokes, {}) from error
+            raise stale_problem(workspace.catalog, error, n_strokes) from error
         return json_answer(Confirmed.of(done))
 
     return await with_draft_labels(request, service, caller.person_id, read, answer)

@@ -1,12 +1,13 @@
 """Drafts: work in progress as a log of strokes, and what it is confirmed as."""
 
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import Field, JsonValue
+from pydantic import Field
 
 from partwise.store.records import Confirmation, Draft, DraftOutcome, StoredStroke
 from partwise_service.schemas.base import WHOLE, Answer, AnyId, Request
+from partwise_service.schemas.strokes import KeptStroke, SentStroke
 
 MAX_STROKES = 1_000
 MAX_SEQUENCE = 2**31 - 1
@@ -21,10 +22,10 @@ class NewDraftRequest(Request):
 
 
 class Strokes(Request):
-    """Strokes as JSON objects, in order, numbered on from `expected_sequence`: see docs/segmentation.md."""
+    """Strokes in order, numbered on from `expected_sequence`."""
 
     expected_sequence: Sequence
-    strokes: Annotated[list[dict[str, JsonValue]], Field(min_length=1, max_length=MAX_STROKES)]
+    strokes: Annotated[list[SentStroke], Field(min_length=1, max_length=MAX_STROKES)]
 
 
 class Acknowledgement(Request):
@@ -80,11 +81,11 @@ class DraftsOut(Answer):
 
 
 class StrokeOut(Answer):
-    """A stroke as it was acknowledged; `payload` is the JSON object that was sent."""
+    """A stroke as it was acknowledged; `payload` is what was sent."""
 
     sequence: int
     id: str
-    payload: dict[str, Any]
+    payload: KeptStroke
     recorded_at: datetime
 
     @classmethod
@@ -99,6 +100,36 @@ class StrokesOut(Answer):
     draft: DraftOut
     items: list[StrokeOut]
     next: int | None
+
+
+class DraftState(Answer):
+    """A draft as it is on record. head_revision : the newest labels of its shape."""
+
+    draft_id: int
+    n_strokes: int
+    base_revision: int | None
+    seen_revision: int | None
+    head_revision: int | None
+    mesh_hash: str
+    outcome: DraftOutcome | None
+
+
+class StaleState(Answer):
+    """Of a refusal because the draft or its shape went on elsewhere. state : what is on record now."""
+
+    state: DraftState
+
+
+class StaleDraft(StaleState):
+    """Both sides of such a refusal. recorded : the log from the strokes that the caller knows of on, 1,000 at most."""
+
+    recorded: list[StrokeOut]
+
+
+class RefusedStrokes(StaleDraft):
+    """Both sides of such a refusal. refused : what was sent."""
+
+    refused: list[SentStroke]
 
 
 class Confirmed(Answer):

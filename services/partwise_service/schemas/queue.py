@@ -112,6 +112,12 @@ _OF_LEASE = (
 )
 
 
+class EndedLease(Answer):
+    """Of a refusal because the lease has ended. outcome : how; null if it lasts and something else is in the way."""
+
+    outcome: LeaseOutcome | None
+
+
 class LeasesOut(Answer):
     items: list[LeaseOut]
 
