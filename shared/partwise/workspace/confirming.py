@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from jaxtyping import UInt16
 
-from partwise.errors import ConflictError, StaleDraftError
+from partwise.errors import ConflictError, NotFoundError, StaleDraftError
 from partwise.labels.annotation_cost import annotation_cost
 from partwise.labels.encoding import labels_sha256
 from partwise.labels.fold import FoldedLog, checked_fold
@@ -72,14 +72,17 @@ def begin_draft(workspace: Workspace, lease: Lease, person_id: int, base_revisio
     Raises
     ------
     ConflictError : the lease has ended or is another person's, or the shape has no mesh.
-    LabelError : the base is not labels of the shape's present mesh.
+    LabelError : the base is not labels of the shape's present mesh, or there is no such revision.
     """
     mesh = shape_mesh(workspace, workspace.catalog.shape(lease.shape_id))
     schema = workspace.catalog.parts(lease.collection_id)
     if base_revision is None:
         sha256 = labels_sha256(np.zeros(mesh.n_faces, dtype=np.uint16))
     else:
-        sha256 = workspace.catalog.revision(base_revision).sha256
+        try:
+            sha256 = workspace.catalog.revision(base_revision).sha256
+        except NotFoundError:  # refused as one of another shape is: which ids there are is not told
+            sha256 = ""
     new = NewDraft(mesh.mesh_hash, base_revision, sha256, schema.version)
     return workspace.catalog.open_draft(lease.id, person_id, new)
 

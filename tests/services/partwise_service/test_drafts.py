@@ -370,6 +370,26 @@ def test_a_draft_outlives_its_lease(bench) -> None:
     assert bench.caller.get(f"/shapes/{bench.shape_id}/draft").json()["n_strokes"] == 2
 
 
+def test_a_draft_says_nothing_of_labels_that_it_may_not_start_from(annotator, workspace, mugs) -> None:
+    """Neither which revisions there are, nor what a reference or another collection's labels are."""
+    eve = workspace.catalog.add_person("eve")
+    body = {"collection_id": mugs.collection_id, "shape_ids": [mugs.ids["a.off"]]}
+    lease = annotator.post("/queue/claim", json=body).json()["items"][0]
+    secrets = [(mugs.ids["a.off"], "a.off", RevisionKind.REFERENCE), (mugs.other_shape_id, "a.off", RevisionKind.HUMAN)]
+    ids = [10**6]
+    for shape_id, name, kind in secrets:
+        mesh = mugs.meshes[name]
+        new = NewRevision(shape_id, mesh.content_hash(), kind, eve.id, 1, np.full(mesh.n_faces, 1))
+        ids.append(workspace.catalog.add_revision(new).id)
+    answers = [annotator.post(f"/leases/{lease['id']}/draft", json={"base_revision": each}) for each in ids]
+    told = {
+        (answer.status_code, answer.text.replace(f"revision {each} ", ""))
+        for answer, each in zip(answers, ids, strict=True)
+    }
+    assert len(told) == 1
+    assert answers[0].status_code == 422
+
+
 def test_a_draft_may_start_from_labels(annotator, workspace, mugs) -> None:
     revision_id = _others_labels(workspace, mugs)
     bench = Bench(annotator, workspace, mugs, "ann", revision_id)

@@ -79,8 +79,8 @@ def _refuse_foreign_base(connection: Connection, shape_id: int, new: NewDraft) -
     base = connection.execute(query.where(revision.kind.in_([kind.value for kind in SHOWN_KINDS]))).first()
     if base is None or tuple(base) != (shape_id, new.mesh_hash, new.base_sha256):
         raise LabelError(
-            f"a draft must start from labels of its shape on its mesh but revision {new.base_revision} is not that, "
-            f"or has another checksum than {new.base_sha256[:12]}…; reload the shape"
+            f"a draft must start from labels of its shape on its mesh but revision {new.base_revision} is not that; "
+            "reload the shape"
         )
 
 
