@@ -45,7 +45,6 @@ draft = Table(
     ForeignKeyConstraint(["shape_id", "mesh_hash"], ["shape_mesh.shape_id", "shape_mesh.mesh_hash"]),
     CheckConstraint("(closed_at IS NULL) = (outcome IS NULL)", name="closed_has_outcome"),
     Index(None, "shape_id", "mesh_hash"),
-    Index(None, "person_id", "id"),
 )
 _IS_OPEN = text("closed_at IS NULL")
 Index(
