@@ -82,7 +82,9 @@ def _problem(status: int, own: Mapping[str, Any] | None) -> dict[str, Any]:
     own : what the framework made of the route's `responses`. What it adds by itself of invalid requests is ours to say.
     """
     common = f"#/components/responses/Problem{status}"
-    extension = None if own is None else own.get("content", {}).get("application/json", {}).get("schema")
+    if own is None:
+        return {"$ref": common}
+    extension = own.get("content", {}).get("application/json", {}).get("schema")
     if extension is None or extension.get("$ref", "").endswith("/HTTPValidationError"):
         return {"$ref": common}
     plain = {"$ref": f"#/components/schemas/Problem{status}"}

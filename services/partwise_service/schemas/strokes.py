@@ -125,7 +125,7 @@ class Stroke(
 
 _BY_NAME = core_schema.definitions_schema(  # a component of its own, however often it is told
     core_schema.definition_reference_schema("Stroke"),
-    [{**Stroke.__pydantic_core_schema__, "ref": "Stroke"}],  # type: ignore[typeddict-item] # a model's schema has one
+    [{**Stroke.__pydantic_core_schema__, "ref": "Stroke"}],
 )
 
 
