@@ -44,6 +44,7 @@ from partwise_service.routes import (
     uploads,
 )
 from partwise_service.schemas.operations import OpsOut
+from partwise_service.schemas.queue import QueueDepthOut
 from partwise_service.security.at_once import AtOnce
 from partwise_service.security.middleware import (
     API,
@@ -86,7 +87,7 @@ time comes first: a request is compared with one route after another until one f
 UPLOAD_PATH = re.compile(rf"{API_V1}/collections/[0-9]+/uploads")
 """Paths whose requests may be as large as `max_upload_bytes`, and take as long as that takes."""
 OPS_S = 10.0
-"""Seconds for which figures of operation are kept: some are counted over all shapes."""
+"""Seconds for which figures of operation and of the queue are kept: some are counted over all shapes."""
 MAX_REPLAYS = 4
 """Drafts whose labels are made for one person at once."""
 _METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE")
@@ -110,11 +111,23 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
             recent = RecentlyGood(clock)
             hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h), recent, clock)
             await resources.enter_async_context(hub.running())
-            ops = Remembered[OpsOut](OPS_S, clock)
+            ops, depths = Remembered[OpsOut](OPS_S, clock), Remembered[QueueDepthOut](OPS_S, clock)
             known = known_drafts(workspace.catalog)
             replays, streams = AtOnce(MAX_REPLAYS, "drafts read"), AtOnce(settings.max_event_streams, "event streams")
             app.state.service = Service(
-                settings, workspace, limiter, recent, EmbeddingMaps(), pool, ops, hub, known, replays, streams, clock
+                settings,
+                workspace,
+                limiter,
+                recent,
+                EmbeddingMaps(),
+                pool,
+                ops,
+                depths,
+                hub,
+                known,
+                replays,
+                streams,
+                clock,
             )
             yield
 

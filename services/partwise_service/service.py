@@ -9,6 +9,7 @@ from partwise_service.maps import EmbeddingMaps
 from partwise_service.ownership import KnownDraft
 from partwise_service.remembered import Remembered
 from partwise_service.schemas.operations import OpsOut
+from partwise_service.schemas.queue import QueueDepthOut
 from partwise_service.security.at_once import AtOnce
 from partwise_service.security.rate_limit import FailureLimiter
 from partwise_service.security.recent import RecentlyGood
@@ -31,6 +32,7 @@ class Service:
     maps: EmbeddingMaps
     tools: ToolPool
     ops: Remembered[OpsOut]
+    depths: Remembered[QueueDepthOut]
     events: EventHub
     known_draft: Callable[[int], KnownDraft]
     replays: AtOnce

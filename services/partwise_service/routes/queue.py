@@ -59,9 +59,11 @@ def claim(caller: Annotator, service: ServiceDep, catalog: CatalogDep, wish: Cla
 
 
 @router.get("/collections/{collection_id}/queue")
-def show_queue(_caller: Annotator, collection: ScopedCollection, catalog: CatalogDep) -> QueueDepthOut:
-    """How much waits."""
-    return QueueDepthOut.of(catalog.queue_depth(collection.id))
+def show_queue(
+    _caller: Annotator, service: ServiceDep, collection: ScopedCollection, catalog: CatalogDep
+) -> QueueDepthOut:
+    """How much waits, counted at most every ten seconds."""
+    return service.depths.get(collection.id, lambda: QueueDepthOut.of(catalog.queue_depth(collection.id)))
 
 
 @router.post("/collections/{collection_id}/queue/assign")

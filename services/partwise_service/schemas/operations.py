@@ -32,7 +32,7 @@ class QueueFigures(Answer):
 
 
 class LeaseFigures(Answer):
-    """held : shapes in people's hands, of which prefetched ones are loaded ahead and expired ones free to others."""
+    """held : shapes in people's hands, of which prefetched ones are loaded ahead. expired : others, free to anybody."""
 
     held: int
     prefetched: int

@@ -160,10 +160,16 @@ def test_operators_see_who_holds_what(annotator, operator, claim, mugs) -> None:
     assert ([each["id"] for each in page["items"]], page["next"]) == ([lease["id"]], str(lease["id"]))
 
 
-def test_the_depth_of_the_queue(annotator, claim, mugs) -> None:
+def test_the_depth_of_the_queue_is_kept_for_some_seconds(annotator, claim, mugs, clock) -> None:
+    def depth() -> tuple[int, int, int]:
+        shown = annotator.get(f"/collections/{mugs.collection_id}/queue").json()
+        return shown["n_free"], shown["n_held"], shown["n_assigned"]
+
+    assert depth() == (3, 0, 0)
     claim(annotator)
-    depth = annotator.get(f"/collections/{mugs.collection_id}/queue").json()
-    assert (depth["n_free"], depth["n_held"], depth["n_assigned"]) == (2, 1, 0)
+    assert depth() == (3, 0, 0)
+    clock.now_s += 60
+    assert depth() == (2, 1, 0)
 
 
 def test_an_assigned_shape_comes_first_for_its_person(annotator, operator, workspace, claim, mugs) -> None:

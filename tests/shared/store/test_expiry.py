@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from partwise.errors import ConflictError
-from partwise.store.records import LeaseOutcome, NewClaim, NewConfirmation, NewToken, Role
+from partwise.store.records import LeaseCounts, LeaseOutcome, NewClaim, NewConfirmation, NewToken, Role
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.testing.catalog.samples import blank_draft, claim, label, ready_shapes, strokes
 from partwise.testing.expect import raises
@@ -108,6 +108,18 @@ def test_an_expired_lease_keeps_no_shape_from_being_done_again(
     assert timed.lease(lease.id).outcome is LeaseOutcome.EXPIRED
     assert _told(timed, "expired") == [shape_id]
     assert claim(timed, collection, bob).round == lease.round + 1
+
+
+def test_what_expired_is_counted_as_free(timed: SqlCatalog, clock: Clock) -> None:
+    collection, (first, _) = ready_shapes(timed, 2)
+    ann = timed.add_person("ann")
+    timed.assign_shapes([first], ann.id, ann.id)
+    claim(timed, collection, ann)
+    clock.move(61)
+    claim(timed, collection, ann)
+    depth = timed.queue_depth(collection.id)
+    assert (depth.n_free, depth.n_held, depth.n_assigned) == (1, 1, 1)
+    assert timed.lease_counts(collection.id) == LeaseCounts(1, 0, 1, 1)
 
 
 def _told(catalog: SqlCatalog, what: str) -> list[int]:

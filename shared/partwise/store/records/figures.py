@@ -6,7 +6,7 @@ from datetime import datetime
 
 @dataclass(frozen=True, slots=True)
 class LeaseCounts:
-    """Leases that have not ended: all, of shapes loaded ahead, past their time; and how many people hold one."""
+    """Leases that last, those of them of shapes loaded ahead, those past their time, and how many people hold one."""
 
     n_active: int
     n_prefetched: int

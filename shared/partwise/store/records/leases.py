@@ -126,7 +126,8 @@ class SkippedShape:
 class QueueDepth:
     """What waits in a collection's queue.
 
-    n_free, n_held : (shape, slot) pairs. n_assigned : of the free ones, those kept for one person.
+    n_free, n_held : (shape, slot) pairs; what nobody renewed in time is free. n_assigned : of the free ones, those kept
+    for one person.
     oldest_at : since when the free one that has waited longest is there, None if nothing waits.
     """
 

@@ -66,11 +66,12 @@ def failure_kinds(connection: Connection, collection_id: int) -> dict[FailureKin
 def lease_counts(connection: Connection, collection_id: int, now: datetime) -> LeaseCounts:
     schema_version(connection, collection_id)
     lease = t.lease.c
+    is_held = lease.expires_at >= now
     query = select(
-        func.count(),
-        func.count(case((lease.is_prefetched, 1))),
-        func.count(case((lease.expires_at < now, 1))),
-        func.count(lease.person_id.distinct()),
+        func.count().filter(is_held),
+        func.count().filter(is_held, lease.is_prefetched),
+        func.count().filter(~is_held),
+        func.count(case((is_held, lease.person_id)).distinct()),
     ).where(lease.collection_id == collection_id, lease.released_at.is_(None))
     return LeaseCounts(*connection.execute(query).one())
 

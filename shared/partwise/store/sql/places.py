@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, Connection, Row, bindparam, cast, delete, exists, func, select, update
+from sqlalchemy import BigInteger, Connection, Row, bindparam, cast, delete, exists, func, or_, select, update
 
 from partwise.errors import ConflictError, NotFoundError
 from partwise.store import tables as t
@@ -229,15 +229,19 @@ def _resize(connection: Connection, collection_id: int, shape_ids: Sequence[int]
         connection.execute(update(place).where(place.c.shape_id == shape_id).values(n_slots=n_slots))
 
 
-def queue_depth(connection: Connection, collection_id: int) -> QueueDepth:
-    place = t.queue_rank.c
+def queue_depth(connection: Connection, collection_id: int, now: datetime) -> QueueDepth:
+    place, lease = t.queue_rank.c, t.lease.c
     collection_queue_settings(connection, collection_id)
-    is_free = place.lease_id.is_(None)
-    query = select(
-        func.count().filter(is_free),
-        func.count(place.lease_id),
-        func.count().filter(is_free, place.person_id.is_not(None)),
-    ).where(place.collection_id == collection_id)
-    n_free, n_held, n_assigned = connection.execute(query).one()
-    oldest = select(func.min(place.opened_at)).where(place.collection_id == collection_id, is_free)
-    return QueueDepth(n_free, n_held, n_assigned, connection.execute(oldest).scalar())
+    is_free = or_(place.lease_id.is_(None), lease.expires_at < now)
+    query = (
+        select(
+            func.count().filter(is_free),
+            func.count().filter(~is_free),
+            func.count().filter(is_free, place.person_id.is_not(None)),
+            func.min(place.opened_at).filter(is_free),
+        )
+        .join_from(t.queue_rank, t.lease, lease.id == place.lease_id, isouter=True)
+        .where(place.collection_id == collection_id)
+    )
+    n_free, n_held, n_assigned, oldest_at = connection.execute(query).one()
+    return QueueDepth(n_free, n_held, n_assigned, oldest_at)

@@ -93,4 +93,4 @@ class SqlQueueCatalog(SqlBase):
 
     def queue_depth(self, collection_id: int) -> r.QueueDepth:
         with reading(self._engine) as connection:
-            return places.queue_depth(connection, collection_id)
+            return places.queue_depth(connection, collection_id, self._clock())
