@@ -1,10 +1,18 @@
 import { useQuery } from "@tanstack/react-query";
 import { api, body } from "../api/client";
 import styles from "./EmbeddingMap.module.css";
+import { STATE_WORDS } from "./MapLegend";
 import { type MapPoints, NO_CLUSTER, POINT_STATES } from "./mapPoints";
 
-/** The shape under the pointer, once it rests there. */
-export function HoverCard({ points, place }: { points: MapPoints; place: number }) {
+export interface HoverCardProps {
+  readonly points: MapPoints;
+  readonly place: number;
+  /** Whether keys have come to it, so that it is to be heard. */
+  readonly isAimed: boolean;
+}
+
+/** The shape that the pointer or the crosshair rests on. */
+export function HoverCard({ points, place, isAimed }: HoverCardProps) {
   const id = points.ids[place] as number;
   const shape = useQuery({
     queryKey: ["shape", id],
@@ -14,19 +22,28 @@ export function HoverCard({ points, place }: { points: MapPoints; place: number 
     },
     retry: false,
   }).data;
-  if (shape === undefined) return null;
   const cluster = points.cluster[place] as number;
-  const isConfirmed = POINT_STATES[points.state[place] as number] === "confirmed";
+  const state = POINT_STATES[points.state[place] as number] ?? "new";
+  const words = [cluster === NO_CLUSTER ? "" : `Cluster ${cluster + 1}`, STATE_WORDS[state]].filter(Boolean);
   return (
-    <div className={styles.card} aria-hidden="true">
-      <img
-        className={styles.cardPicture}
-        alt=""
-        src={`/api/v1/shapes/${id}/thumbnail?segmentation=${isConfirmed ? "confirmed" : "refined"}`}
-      />
-      <p className={styles.cardName}>{shape.source_key}</p>
-      {cluster !== NO_CLUSTER && <p className={styles.number}>Cluster {cluster + 1}</p>}
-    </div>
+    <>
+      {shape && (
+        <div className={styles.card} aria-hidden="true">
+          <img
+            className={styles.cardPicture}
+            alt=""
+            src={`/api/v1/shapes/${id}/thumbnail?segmentation=${state === "confirmed" ? "confirmed" : "refined"}`}
+          />
+          <p className={styles.cardName}>{shape.source_key}</p>
+          <p className={styles.number}>{words.join(", ")}</p>
+        </div>
+      )}
+      {isAimed && (
+        <p className="unseen" role="status">
+          {shape && [shape.source_key, ...words].join(", ")}
+        </p>
+      )}
+    </>
   );
 }
 

@@ -5,7 +5,7 @@ import { type Colouring, clusterColour, STATE_TOKENS } from "./colours";
 import styles from "./EmbeddingMap.module.css";
 import { clusterSizes, type MapPoints, NO_CLUSTER, POINT_STATES, type PointState } from "./mapPoints";
 
-const WORDS: Readonly<Record<PointState, string>> = {
+export const STATE_WORDS: Readonly<Record<PointState, string>> = {
   new: "New",
   failed: "Failed",
   ready: "Ready",
@@ -53,7 +53,7 @@ export function MapLegend({ points, colouring, cluster, onCluster }: MapLegendPr
           : POINT_STATES.map((state, i) => (
               <li key={state} className={styles.kind}>
                 <span className={styles.dot} style={{ background: `var(${STATE_TOKENS[i]})` }} />
-                {WORDS[state]}
+                {STATE_WORDS[state]}
                 <span className={styles.number}>{whole(states[i] ?? 0)}</span>
               </li>
             ))}

@@ -4,33 +4,34 @@ import { Button, Notice, Progress, Spinner } from "../components";
 import { EmbeddingMap } from "./EmbeddingMap";
 import styles from "./EmbeddingMap.module.css";
 import type { MapPanelProps } from "./mapPanelProps";
-import { mapProgressQuery, mapQuery } from "./mapPoints";
+import { mapProgressQuery } from "./mapQueries";
+import { useMapPoints } from "./useMapPoints";
 
 /** The map of a collection, or why there is none. */
 export function MapPanel(props: MapPanelProps) {
-  const map = useQuery(mapQuery(props.collectionId));
-  if (map.data !== undefined) return <EmbeddingMap key={map.dataUpdatedAt} points={map.data} {...props} />;
-  if (map.error instanceof Problem && map.error.status === 404) {
+  const { collectionId } = props;
+  const { points, error, refetch } = useMapPoints(collectionId);
+  if (points !== undefined) return <EmbeddingMap key={collectionId} points={points} {...props} />;
+  if (error instanceof Problem && error.status === 404) {
     return (
       <Notice kind="empty" title="No map yet">
-        It is drawn once shapes are described and the first ones are chosen: an operator runs{" "}
-        <code>partwise select</code>.
+        It is drawn by itself once two shapes are prepared, and shapes that come later are added to it.
       </Notice>
     );
   }
-  if (map.error !== null) {
+  if (error !== null) {
     return (
       <Notice
         kind="error"
         isCentred
         title="The map could not be read"
-        actions={<Button onClick={() => void map.refetch()}>Try again</Button>}
+        actions={<Button onClick={refetch}>Try again</Button>}
       >
-        {map.error.message}
+        {error.message}
       </Notice>
     );
   }
-  return <Reading collectionId={props.collectionId} />;
+  return <Reading collectionId={collectionId} />;
 }
 
 function Reading({ collectionId }: { collectionId: number }) {

@@ -1,5 +1,5 @@
 /** The map on a canvas: points by the pixel, and above them what is marked, drawn when something changed. */
-import { boxOf, type Camera, cameraOver, type Extent, toScreen } from "./camera";
+import { boxOf, type Camera, cameraOver, type Extent, toMap, toScreen } from "./camera";
 import { type Colouring, kindsOf, paletteOf, tokenColours } from "./colours";
 import type { Place } from "./lasso";
 import { type MapPoints, placeOf } from "./mapPoints";
@@ -16,8 +16,10 @@ export interface Marks {
 }
 
 export class MapView {
-  readonly grid: PointGrid;
+  grid: PointGrid;
   camera: Camera;
+  /** Called when something else is in view. */
+  onLook: () => void = () => undefined;
   private home: Camera;
   private extent: Extent = { width: 1, height: 1 };
   private ratio = 1;
@@ -32,11 +34,31 @@ export class MapView {
   private readonly scheme = window.matchMedia("(prefers-color-scheme: dark)");
   private readonly schemeChoice = new MutationObserver(() => this.recolour());
 
-  constructor(readonly points: MapPoints) {
+  /** camera : null shows all. */
+  constructor(
+    public points: MapPoints,
+    camera: Camera | null,
+  ) {
     this.grid = new PointGrid(points);
     this.kinds = kindsOf(points, this.colouring);
     this.home = cameraOver(boxOf(points), this.extent);
-    this.camera = this.home;
+    this.camera = camera ?? this.home;
+  }
+
+  /** Takes other points. What is in view stays, unless nothing would be. */
+  show(points: MapPoints): void {
+    if (points === this.points) return;
+    const isPlacedAnew = points.x !== this.points.x;
+    this.points = points;
+    this.kinds = kindsOf(points, this.colouring);
+    if (isPlacedAnew) {
+      const wasHome = this.isHome;
+      this.grid = new PointGrid(points);
+      this.home = cameraOver(boxOf(points), this.extent);
+      if (wasHome || this.inView().length === 0) this.camera = this.home;
+      this.onLook();
+    }
+    this.draw();
   }
 
   connect(canvas: HTMLCanvasElement): void {
@@ -46,7 +68,6 @@ export class MapView {
     this.scheme.addEventListener("change", this.recolour);
     this.schemeChoice.observe(document.documentElement, { attributeFilter: ["data-scheme"] });
     this.resize();
-    this.goHome();
   }
 
   disconnect(): void {
@@ -65,9 +86,14 @@ export class MapView {
     return this.home;
   }
 
+  get isHome(): boolean {
+    return this.camera === this.home;
+  }
+
   look(camera: Camera): void {
     this.camera = camera;
     this.draw();
+    this.onLook();
   }
 
   goHome(): void {
@@ -91,6 +117,18 @@ export class MapView {
     return Math.min(7, Math.max(1.2, (70 / Math.sqrt(Math.max(1, this.points.n))) * zoom));
   }
 
+  /** Places of the points that are in view, in ascending order. */
+  inView(): number[] {
+    const [left, top] = toMap(this.camera, this.extent, 0, 0);
+    const [right, bottom] = toMap(this.camera, this.extent, this.extent.width, this.extent.height);
+    return this.grid.within({ left, right, bottom, top });
+  }
+
+  /** The point nearest to a place on the canvas, in pixels, within so many of them; -1 if there is none. */
+  nearest(px: number, py: number, reach: number): number {
+    return this.grid.nearest(...toMap(this.camera, this.extent, px, py), reach / this.camera.scale);
+  }
+
   readonly draw = (): void => {
     cancelAnimationFrame(this.frame);
     this.frame = requestAnimationFrame(() => this.drawNow());
@@ -110,7 +148,7 @@ export class MapView {
   private resize(): void {
     if (!this.canvas) return;
     const { clientWidth, clientHeight } = this.canvas;
-    const wasHome = this.camera === this.home;
+    const wasHome = this.isHome;
     this.ratio = Math.min(MOST_PIXEL_RATIO, window.devicePixelRatio);
     this.extent = { width: Math.max(1, clientWidth), height: Math.max(1, clientHeight) };
     this.canvas.width = Math.round(this.extent.width * this.ratio);
@@ -118,6 +156,7 @@ export class MapView {
     this.image = undefined;
     this.home = cameraOver(boxOf(this.points), this.extent);
     if (wasHome) this.camera = this.home;
+    this.onLook();
     this.drawNow(); // a canvas is empty once it is resized, and would flicker until the next frame
   }
 

@@ -27,12 +27,5 @@ export function pointsInside(points: MapPoints, grid: PointGrid, outline: readon
     bottom: Math.min(...ys),
     top: Math.max(...ys),
   };
-  const found: number[] = [];
-  grid.visit(box, (i) => {
-    const x = points.x[i] as number;
-    const y = points.y[i] as number;
-    if (x < box.left || x > box.right || y < box.bottom || y > box.top) return;
-    if (isInside(outline, x, y)) found.push(i);
-  });
-  return found.sort((a, b) => a - b);
+  return grid.within(box).filter((i) => isInside(outline, points.x[i] as number, points.y[i] as number));
 }

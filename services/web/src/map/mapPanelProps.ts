@@ -8,5 +8,7 @@ export interface MapPanelProps {
   /** Whether the person may say what comes first in the queue. */
   readonly mayOrder: boolean;
   onChoose(shapeIds: readonly number[], isAdding: boolean): void;
+  /** One shape was picked, for the list to show where it is. */
+  onShow?(shapeId: number): void;
   onCluster(cluster: number | null): void;
 }

@@ -1,6 +1,5 @@
 /** The map of a collection in columns: where every embedded shape lies, its cluster, and where it stands. */
-import { queryOptions } from "@tanstack/react-query";
-import { api, body, type Schemas } from "../api/client";
+import type { Schemas } from "../api/client";
 
 type Page = Schemas["EmbeddingPage"];
 export type PointState = Page["states"][number];
@@ -8,8 +7,6 @@ export type PointState = Page["states"][number];
 export const POINT_STATES: readonly PointState[] = ["new", "failed", "ready", "review", "confirmed"];
 /** In place of a cluster where none is on record. */
 export const NO_CLUSTER = -1;
-
-const PAGE_POINTS = 20_000;
 
 /** `n` points; ids ascend. x, y : in units of the embedding. cluster : NO_CLUSTER or from 0 on. state : in POINT_STATES. */
 export interface MapPoints {
@@ -72,43 +69,16 @@ export function clusterSizes(points: MapPoints): Map<number, number> {
   return new Map([...sizes].sort(([a], [b]) => a - b));
 }
 
-async function readMap(
-  collectionId: number,
-  signal: AbortSignal,
-  onProgress: (share: number) => void,
-): Promise<MapPoints> {
-  const pages: Page[] = [];
-  let after: number | null = 0;
-  while (after !== null) {
-    const params = { path: { collection_id: collectionId }, query: { after, limit: PAGE_POINTS } };
-    const page: Page = await body(
-      api.GET("/api/v1/collections/{collection_id}/embedding", { params, signal }),
-    );
-    const isOther = pages[0] !== undefined && pages[0].embedding !== page.embedding;
-    if (isOther)
-      pages.length = 0; // the map was made anew meanwhile
-    else pages.push(page);
-    onProgress((pages.length * PAGE_POINTS) / Math.max(1, page.n_shapes));
-    after = isOther ? 0 : page.next === null ? null : Number(page.next);
+/** The same points with other states of some shapes, by id; the very same object where that changes nothing. */
+export function withStates(points: MapPoints, states: ReadonlyMap<number, PointState>): MapPoints {
+  const state = points.state.slice();
+  let isChanged = false;
+  for (const [id, name] of states) {
+    const place = placeOf(points, id);
+    const number = POINT_STATES.indexOf(name);
+    if (place < 0 || number < 0 || state[place] === number) continue;
+    state[place] = number;
+    isChanged = true;
   }
-  return pointsOf(pages);
+  return isChanged ? { ...points, state } : points;
 }
-
-export const mapQuery = (collectionId: number) =>
-  queryOptions({
-    queryKey: ["map", collectionId],
-    queryFn: ({ signal, client }) =>
-      readMap(collectionId, signal, (share) =>
-        client.setQueryData(mapProgressQuery(collectionId).queryKey, Math.min(1, share)),
-      ),
-    structuralSharing: false,
-    staleTime: 60_000,
-  });
-
-/** How much of the map has been read, in [0, 1], while it is. */
-export const mapProgressQuery = (collectionId: number) =>
-  queryOptions({
-    queryKey: ["map progress", collectionId],
-    queryFn: () => 0,
-    staleTime: Number.POSITIVE_INFINITY,
-  });

@@ -42,6 +42,18 @@ describe("PointGrid", () => {
   });
 });
 
+describe("points of a box", () => {
+  it("are those that a look at all of them finds", () => {
+    const box = { left: 2, right: 5, bottom: -1, top: 0.5 };
+    const expected = Array.from({ length: N }, (_, i) => i).filter((i) => {
+      const [x, y] = [points.x[i] ?? 0, points.y[i] ?? 0];
+      return x >= box.left && x <= box.right && y >= box.bottom && y <= box.top;
+    });
+    expect(expected.length).toBeGreaterThan(50);
+    expect(grid.within(box)).toEqual(expected);
+  });
+});
+
 describe("lasso", () => {
   const star: Place[] = [
     [1, -1.5],

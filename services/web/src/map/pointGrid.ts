@@ -37,6 +37,16 @@ export class PointGrid {
     return best;
   }
 
+  /** The points of a box, in ascending order. */
+  within(box: Box): number[] {
+    const found: number[] = [];
+    this.visit(box, (i) => {
+      const [x, y] = [this.points.x[i] as number, this.points.y[i] as number];
+      if (x >= box.left && x <= box.right && y >= box.bottom && y <= box.top) found.push(i);
+    });
+    return found.sort((a, b) => a - b);
+  }
+
   /** Calls for every point of the cells that a box touches, so for some outside it, too. */
   visit(box: Box, call: (place: number) => void): void {
     const [left, right] = [this.column(box.left), this.column(box.right)];

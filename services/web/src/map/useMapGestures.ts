@@ -7,6 +7,7 @@ import type { MapView } from "./MapView";
 export type Tool = "move" | "lasso" | "rectangle";
 
 export interface MapGestures {
+  /** The shape under the pointer or, on a touch screen, the one that was last touched; -1 for none. */
   onHover(place: number): void;
   /** One shape was pointed at. */
   onPick(place: number, isAdding: boolean): void;
@@ -31,6 +32,8 @@ const ZOOMS: ReadonlyMap<string, number> = new Map([
 /** A pointer that moves less than this points. */
 const STILL_PX = 4;
 const REACH_PX = 8;
+/** Keys move in steps, so that they aim less closely than a pointer. */
+const AIM_PX = 40;
 
 interface Drag {
   readonly start: readonly [number, number];
@@ -48,8 +51,7 @@ export function useMapGestures(
   const pointers = useRef(new Map<number, readonly [number, number]>());
   const zoom = (at: readonly [number, number], factor: number) =>
     view.look(zoomedAt(view.camera, view.size, at, factor, view.homeCamera));
-  const placeAt = ([px, py]: readonly [number, number]) =>
-    view.grid.nearest(...toMap(view.camera, view.size, px, py), (view.radius + REACH_PX) / view.camera.scale);
+  const placeAt = ([px, py]: readonly [number, number]) => view.nearest(px, py, view.radius + REACH_PX);
 
   useEffect(() => {
     const element = canvas.current;
@@ -71,8 +73,11 @@ export function useMapGestures(
     view.mark({ outline: [] });
     if (!ended || isDropped) return;
     const isAdding = event.shiftKey || event.ctrlKey || event.metaKey;
-    if (!ended.isMoved) gestures.onPick(placeAt(ended.start), isAdding);
-    else if (tool !== "move")
+    if (!ended.isMoved) {
+      const place = placeAt(ended.start);
+      if (event.pointerType === "touch") gestures.onHover(place);
+      gestures.onPick(place, isAdding);
+    } else if (tool !== "move")
       gestures.onEncircle(pointsInside(view.points, view.grid, ended.outline), isAdding);
   };
 
@@ -105,9 +110,13 @@ export function useMapGestures(
     },
     onPointerUp: (event: PointerEvent) => end(event, false),
     onPointerCancel: (event: PointerEvent) => end(event, true),
-    onPointerLeave: () => gestures.onHover(-1),
+    onPointerLeave: (event: PointerEvent) => {
+      if (event.pointerType !== "touch") gestures.onHover(-1); // what was touched stays to be looked at
+    },
     onKeyDown: (event: KeyboardEvent) => {
-      if (event.ctrlKey || event.metaKey || event.altKey || !moveByKey(view, event.key)) return;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.key === "Enter") gestures.onPick(aimedAt(view), event.shiftKey);
+      else if (!moveByKey(view, event.key)) return;
       event.preventDefault();
     },
   };
@@ -130,7 +139,12 @@ export function useMapGestures(
   }
 }
 
-/** Whether the key is one of the map's. */
+/** The shape that is nearest to the middle of the map, where keys pick; -1 if none is near. */
+export function aimedAt(view: MapView): number {
+  return view.nearest(view.size.width / 2, view.size.height / 2, AIM_PX);
+}
+
+/** Whether the key moves the map. */
 function moveByKey(view: MapView, key: string): boolean {
   const pan = PANS.get(key);
   const factor = ZOOMS.get(key);
