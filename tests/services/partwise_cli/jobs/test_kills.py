@@ -4,6 +4,7 @@ Whenever it dies, the worker after it does what is left, and everything is done 
 one result for each shape and stage, nothing lost and nothing failed.
 """
 
+import io
 import os
 import signal
 import subprocess
@@ -11,23 +12,27 @@ import sys
 import tempfile
 import threading
 import time
+import zipfile
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 
-from partwise.io.write import write_mesh
+from partwise.io.off import format_off
 from partwise.mesh import TriMesh
 from partwise.store.array_store import BlockAddress
+from partwise.store.large_objects import read_chunks
 from partwise.store.records import EventKind, Job, JobKind, JobState, RevisionKind, ShapeState
-from partwise.workspace.ingest import ingest_folder
+from partwise.workspace.export_archive import find_export
 from partwise.workspace.labelling import commit_labels
 from partwise.workspace.shapes import all_shapes, load_mesh, shape_mesh
+from partwise.workspace.uploads import begin_upload, uploads
 from partwise.workspace.workspace import Workspace, init_collection, open_workspace
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
@@ -35,7 +40,14 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
 N_SHAPES, N_LABELLED, N_ROUNDS, SEED = 16, 3, 2, 5
 MAX_LOSSES = 2
 """Of one job: the third time that its worker is lost it fails, as whatever it does may be what kills them."""
-MAX_DELAY_S = {JobKind.PREPROCESS: 12.0, JobKind.TRAIN: 6.0, JobKind.EVALUATE: 6.0}
+MAX_DELAY_S = {
+    JobKind.INGEST: 0.3,
+    JobKind.PREPROCESS: 12.0,
+    JobKind.TRAIN: 6.0,
+    JobKind.EVALUATE: 6.0,
+    JobKind.EXPORT: 0.3,
+}
+EXPORT = {"segmentation": "predicted", "format": "seg", "on": "working"}
 ENDS_WITHIN_S = 600.0
 POLL_S = 0.05
 SETTINGS = """
@@ -105,13 +117,18 @@ def pause(seconds: float) -> None:
     threading.Event().wait(seconds)
 
 
-def write_balls(folder: Path, first: int) -> None:
-    """Bumpy balls of 320 faces, no two alike."""
+def upload_balls(lab: Lab, first: int) -> str:
+    """Sends bumpy balls of 320 faces, no two alike, in an archive."""
     rng = np.random.default_rng(first)
     ball = trimesh.creation.icosphere(subdivisions=2)
-    for number in range(first, first + N_SHAPES):
-        bumps = 1 + 0.2 * rng.random((len(ball.vertices), 1))
-        write_mesh(TriMesh(ball.vertices * bumps, ball.faces), folder / f"{number:02d}.off")
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as made:
+        for number in range(first, first + N_SHAPES):
+            bumps = 1 + 0.2 * rng.random((len(ball.vertices), 1))
+            made.writestr(f"{number:02d}.off", format_off(TriMesh(ball.vertices * bumps, ball.faces)))
+    writer = begin_upload(lab.workspace, lab.collection_id, "balls.zip", "oscar", timedelta(days=1), 8)
+    writer.write(archive.getvalue())
+    return writer.finish().name
 
 
 @contextmanager
@@ -142,13 +159,13 @@ def test_everything_is_done_once_whenever_workers_are_killed() -> None:
     with tempfile.TemporaryDirectory(prefix="pw") as name, open_lab(Path(name)) as lab:
         catalog = lab.workspace.catalog
         for number in range(N_ROUNDS):
-            write_balls(Path(name) / f"shapes{number}", number * N_SHAPES)
-            ingest_folder(lab.workspace, catalog.get_collection("balls"), Path(name) / f"shapes{number}")
-            lab.finish(catalog.enqueue_job(lab.collection_id, JobKind.PREPROCESS))
+            sent = {"upload_id": upload_balls(lab, number * N_SHAPES)}
+            lab.finish(catalog.enqueue_job(lab.collection_id, JobKind.INGEST, sent))
             lab.finish_what_came_of_it()
             label(lab, number * N_SHAPES)
             lab.finish(catalog.enqueue_job(lab.collection_id, JobKind.TRAIN))
             lab.finish_what_came_of_it()
+            check_export(lab, lab.finish(catalog.enqueue_job(lab.collection_id, JobKind.EXPORT, EXPORT)))
             assert {job.state for job in catalog.jobs(lab.collection_id)} == {JobState.DONE}
             assert [model.version for model in catalog.models(lab.collection_id)] == list(range(number + 1, 0, -1))
         assert min(lab.n_kills[kind] for kind in MAX_DELAY_S) >= N_ROUNDS
@@ -156,10 +173,21 @@ def test_everything_is_done_once_whenever_workers_are_killed() -> None:
         os.write(1, f"\nkilled: {dict(lab.n_kills)}\n".encode())
 
 
+def check_export(lab: Lab, job: Job) -> None:
+    """All that has a prediction is in it, and it is whole."""
+    assert job.result is not None
+    made = find_export(lab.workspace, lab.collection_id, job.result["download"])
+    with zipfile.ZipFile(io.BytesIO(b"".join(read_chunks(lab.workspace.arrays, made)))) as archive:
+        assert archive.testzip() is None
+        n_shapes = sum(name.endswith(".seg") for name in archive.namelist())
+    assert n_shapes == job.result["n_written"] == sum(lab.workspace.catalog.state_counts(lab.collection_id).values())
+
+
 def check(lab: Lab) -> None:
     """Nothing is missing, failed or there twice."""
     catalog = lab.workspace.catalog
     n_all = N_SHAPES * N_ROUNDS
+    assert uploads(lab.workspace, lab.collection_id) == []
     counts = {count.stage: (count.n_done, count.n_failed) for count in catalog.stage_counts(lab.collection_id)}
     assert counts == dict.fromkeys(("mesh", "remesh", "describe", "picture", "evaluate", "refine"), (n_all, 0))
     newest = catalog.latest_model(lab.collection_id)
