@@ -7,6 +7,8 @@ from playwright.sync_api import Locator, Page, expect
 
 START = 1
 """Strokes of a draft before its person does anything: the labels that it starts from."""
+WHITE = 250
+"""Of 255: as the brush's ring is, and nothing else that a view shows."""
 Points = list[tuple[float, float]]
 
 
@@ -78,6 +80,23 @@ def test_two_fingers_zoom_and_draw_nothing(bench) -> None:
     bench.until(lambda: bench.surface_share() > 1.5 * covered)
     bench.wait_saved()
     assert len(bench.strokes(draft_id)) == START  # what the first finger began is given up
+
+
+def test_a_finger_that_was_lifted_leaves_no_brush_behind(bench) -> None:
+    _, (across, down) = next(bench.places())
+
+    def is_brush_seen() -> bool:
+        return bool((bench.middle_of(bench.view).min(axis=2) > WHITE).any())
+
+    bench.page.mouse.move(1, 1)
+    bench.until(lambda: not is_brush_seen())
+    fingers = Fingers(bench.page, bench.view)
+    fingers.down([(across, down)])
+    for step in range(1, 4):
+        fingers.move([(across, down - 0.02 * step)])
+    bench.until(is_brush_seen)
+    fingers.up()
+    bench.until(lambda: not is_brush_seen())
 
 
 def test_a_finger_that_rests_on_a_tile_chooses_it(bench) -> None:
