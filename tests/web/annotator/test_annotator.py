@@ -259,6 +259,17 @@ def test_a_view_shows_other_labels_and_how_unsure_the_model_is_beside_the_draft(
     expect(page.get_by_role("button", name="View 2 of 2 shows: Draft")).to_be_visible()
 
 
+def test_letters_are_keys_again_after_a_choice_from_a_list(bench) -> None:
+    page = bench.page
+    only_over = page.get_by_label("Only over")
+    only_over.click()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(only_over).not_to_have_value("any")
+    page.keyboard.press("h")
+    expect(page.get_by_role("button", name="Turn", exact=True)).to_have_attribute("aria-pressed", "true")
+
+
 def test_the_edges_of_faces_are_shown_on_demand(bench) -> None:
     bench.page.keyboard.press("t")
     edges = bench.page.get_by_role("button", name="Edges of faces")

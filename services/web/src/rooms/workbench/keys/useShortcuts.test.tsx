@@ -16,12 +16,6 @@ function Bench() {
   );
 }
 
-/** jsdom does not tell how an element came to the focus. */
-function focused(select: HTMLElement, by: "click" | "keys"): void {
-  vi.spyOn(select, "matches").mockReturnValue(by === "keys");
-  select.focus();
-}
-
 beforeEach(() => {
   useTool.mockClear();
   render(<Bench />);
@@ -30,7 +24,8 @@ afterEach(cleanup);
 
 it("are keys again after a choice from a list", () => {
   const select = screen.getByLabelText("Only over");
-  focused(select, "click");
+  fireEvent.mouseDown(select);
+  select.focus();
   fireEvent.change(select, { target: { value: "Back" } });
   fireEvent.keyDown(document.activeElement ?? document.body, { key: "b" });
   expect(useTool).toHaveBeenCalledWith("paint");
@@ -38,7 +33,9 @@ it("are keys again after a choice from a list", () => {
 
 it("stay with a list that was come to by keys, which choose of it", () => {
   const select = screen.getByLabelText("Only over");
-  focused(select, "keys");
+  fireEvent.mouseDown(select); // nothing was chosen then
+  fireEvent.keyDown(select, { key: "Tab" });
+  select.focus();
   fireEvent.change(select, { target: { value: "Back" } });
   expect(document.activeElement).toBe(select);
   fireEvent.keyDown(select, { key: "b" });

@@ -3,11 +3,13 @@ import { useEffect, useRef } from "react";
 import { hasOverlay } from "../../../app/shell/hasOverlay";
 import { isTyping } from "../../../app/shell/isTyping";
 import { shortcutOf, type WorkbenchActions } from "./shortcuts";
+import { useListFocus } from "./useListFocus";
 
 /** Where Space and Enter press what has the focus. */
 const PRESSED = "button, a[href], summary, input[type=checkbox], [role^=menuitem]";
 
 export function useShortcuts(actions: WorkbenchActions): void {
+  useListFocus();
   const latest = useRef(actions);
   useEffect(() => {
     latest.current = actions;
@@ -22,11 +24,9 @@ export function useShortcuts(actions: WorkbenchActions): void {
     };
     window.addEventListener("keydown", onKeyDown);
     window.addEventListener("mousedown", leaveFocus);
-    window.addEventListener("change", giveUpFocus);
     return () => {
       window.removeEventListener("keydown", onKeyDown);
       window.removeEventListener("mousedown", leaveFocus);
-      window.removeEventListener("change", giveUpFocus);
     };
   }, []);
 }
@@ -35,12 +35,6 @@ export function useShortcuts(actions: WorkbenchActions): void {
 function leaveFocus(event: MouseEvent): void {
   const isPressed = event.target instanceof Element && event.target.closest("button") !== null;
   if (isPressed && document.querySelector("dialog[open]") === null) event.preventDefault();
-}
-
-/** Nor does a list that was chosen from by a click: a letter is to be a key again, not to choose another of the list. */
-function giveUpFocus({ target }: Event): void {
-  if (!(target instanceof HTMLSelectElement) || hasOverlay()) return;
-  if (!target.matches(":focus-visible")) target.blur(); // who came to it by keys goes on choosing by them
 }
 
 function isMeantElsewhere({ target, key }: KeyboardEvent): boolean {
