@@ -38,7 +38,7 @@ export function PartsPanel({ collectionId, mayChange }: { collectionId: number; 
       <p className={styles.about}>
         {count(parts.length, "part")}, version {version}.{" "}
         {mayChange
-          ? "A part that is added or removed makes the next version; names, colours and explanations can change at any time."
+          ? "A part that is added or removed makes the next version, and labels made before it wait in Reviews; names, colours and explanations can change at any time."
           : "A reviewer can change them."}
       </p>
       <ol className={styles.list} aria-label="Parts">

@@ -46,7 +46,7 @@ export function RemovePartDialog({ collectionId, version, part, onClose }: Remov
         ) : (
           <p>
             Nobody can label faces with it any more. This makes version {version + 1} of the parts; labels
-            made under earlier ones stay on record as they are, and the next model is trained without it.
+            made under earlier ones stay as they are, and wait in Reviews before a model is trained on them.
           </p>
         )}
         {removing.error && (

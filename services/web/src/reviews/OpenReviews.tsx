@@ -3,6 +3,7 @@ import { ChevronLeft, ChevronRight } from "lucide-react";
 import { useEffect, useState } from "react";
 import { IconButton, Notice } from "../components";
 import { whole } from "../components/numbers";
+import { AcceptChanged } from "./AcceptChanged";
 import { Asked } from "./Asked";
 import { ReviewCard } from "./ReviewCard";
 import styles from "./Reviews.module.css";
@@ -26,8 +27,8 @@ export function OpenReviews({ collectionId }: { collectionId: number }) {
       {() =>
         shown === undefined ? (
           <Notice kind="empty" title="Nothing waits for a look">
-            Labels come here when they are to be checked, when people disagree, or when their mesh has
-            changed.
+            Labels come here when they are to be checked, when people disagree, or when their mesh or the
+            parts have changed.
           </Notice>
         ) : (
           <>
@@ -51,6 +52,7 @@ export function OpenReviews({ collectionId }: { collectionId: number }) {
               />
             </div>
             <ReviewCard key={shown.review.id} collectionId={collectionId} {...shown} />
+            <AcceptChanged collectionId={collectionId} />
           </>
         )
       }

@@ -4,10 +4,11 @@ import { AcceptedInBulk } from "./AcceptedInBulk";
 import { Disagreements } from "./Disagreements";
 import { OpenReviews } from "./OpenReviews";
 import styles from "./Reviews.module.css";
+import { SkippedShapes } from "./SkippedShapes";
 
-type View = "open" | "disagreements" | "accepts";
+type View = "open" | "disagreements" | "skips" | "accepts";
 
-/** What leads decide: labels that wait for a second look, people who disagree, and how right bulk acceptance was. */
+/** What leads decide: labels that wait for a second look, people who disagree, what was skipped, and how right bulk acceptance was. */
 export function ReviewsPanel({ collectionId }: { collectionId: number }) {
   const [view, setView] = useState<View>("open");
   return (
@@ -20,12 +21,14 @@ export function ReviewsPanel({ collectionId }: { collectionId: number }) {
         options={[
           { value: "open", label: "Waiting" },
           { value: "disagreements", label: "Disagreements" },
+          { value: "skips", label: "Skipped" },
           { value: "accepts", label: "Bulk accepts" },
         ]}
         onChange={setView}
       />
       {view === "open" && <OpenReviews collectionId={collectionId} />}
       {view === "disagreements" && <Disagreements collectionId={collectionId} />}
+      {view === "skips" && <SkippedShapes collectionId={collectionId} />}
       {view === "accepts" && <AcceptedInBulk collectionId={collectionId} />}
     </div>
   );

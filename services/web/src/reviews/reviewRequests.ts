@@ -2,6 +2,7 @@
 import { infiniteQueryOptions, queryOptions, useMutation, useQueryClient } from "@tanstack/react-query";
 import { api, body, type Schemas } from "../api/client";
 import { useToast } from "../components";
+import { count } from "../components/numbers";
 
 export type Review = Schemas["OpenReviewOut"];
 export type Effort = Schemas["EffortOut"];
@@ -43,12 +44,13 @@ export const reviewsQuery = (collectionId: number) =>
     getNextPageParam: nextOf,
   });
 
-/** How many labels wait. */
-export const reviewCountQuery = (collectionId: number) =>
+/** How many labels wait, of one reason or of all. */
+export const reviewCountQuery = (collectionId: number, reason?: Review["reason"]) =>
   queryOptions({
-    queryKey: ["reviews", collectionId, "count"],
+    queryKey: ["reviews", collectionId, "count", reason ?? "all"],
     queryFn: async ({ signal }) => {
-      const params = { path: ofCollection(collectionId), query: { reason: REASONS } };
+      const asked = reason === undefined ? REASONS : [reason];
+      const params = { path: ofCollection(collectionId), query: { reason: asked } };
       return (await body(api.GET("/api/v1/collections/{collection_id}/reviews/count", { params, signal })))
         .n_reviews;
     },
@@ -144,6 +146,24 @@ export function useDecision(collectionId: number) {
     mutationFn: decide,
     onSuccess: (_answer, decision) => showToast({ message: doneInWords(decision), tone: "good" }),
     // Also where it was refused: somebody else may have decided meanwhile.
+    onSettled: () => client.invalidateQueries({ queryKey: ["reviews", collectionId] }),
+  });
+}
+
+/** Accepts all labels that wait since parts have changed, and says how many those were. */
+export function useAcceptChanged(collectionId: number) {
+  const client = useQueryClient();
+  const showToast = useToast();
+  return useMutation({
+    mutationFn: () =>
+      body(
+        api.POST("/api/v1/collections/{collection_id}/reviews/accept", {
+          params: { path: ofCollection(collectionId) },
+          body: { reason: "schema" },
+        }),
+      ),
+    onSuccess: ({ n_accepted }) =>
+      showToast({ message: `Labels of ${count(n_accepted, "shape")} accepted`, tone: "good" }),
     onSettled: () => client.invalidateQueries({ queryKey: ["reviews", collectionId] }),
   });
 }

@@ -4,7 +4,7 @@ import type { EventKind, ServiceEvent } from "../../api/events";
 import type { About } from "../../api/queryKeys";
 
 const STALE_AFTER: Readonly<Record<EventKind, readonly About[]>> = {
-  queue: ["leases", "ops"],
+  queue: ["leases", "skips", "ops"],
   training: ["models", "orders", "rounds", "ops", "jobs"],
   stage: ["ops", "failures", "counts", "orders", "shape"],
   job: ["jobs", "ops", "failures"],

@@ -57,6 +57,7 @@ beforeEach(() => {
     [`${IN}/jobs`]: () => EMPTY,
     [`${IN}/failures`]: () => ({ items: [FAILURE], next: null }),
     [`${IN}/leases`]: () => EMPTY,
+    [`${IN}/skips`]: () => EMPTY,
     [`${IN}/rounds`]: () => ({ score_name: "entropy", items: [] }),
     "/api/v1/ops/people": () => ({ days: 30, items: [] }),
     "/api/v1/people": () => EMPTY,
@@ -134,4 +135,20 @@ it("says what to do where figures cannot be read, and keeps the lists", async ()
   expect((await screen.findByRole("alert")).textContent).toContain("Busy; try again.");
   expect(await screen.findByText("broken.off")).toBeDefined();
   expect(screen.queryByRole("heading", { name: "Stages" })).toBeNull();
+});
+
+it("says why shapes were skipped, and by whom", async () => {
+  const skip = {
+    shape_id: 7,
+    source_key: "two.off",
+    person_id: 4,
+    person_name: "ann",
+    reason: "two in one",
+    skipped_at: AT,
+  };
+  service.answers[`${IN}/skips`] = () => ({ items: [skip], next: null });
+  show();
+  const row = (await screen.findByText("two in one")).closest("tr");
+  expect(row?.textContent).toContain("ann");
+  expect(screen.getByRole("link", { name: "two.off" }).getAttribute("href")).toContain("7");
 });

@@ -10,6 +10,7 @@ import styles from "./OperationsRoom.module.css";
 import { PeoplePanel } from "./people/PeoplePanel";
 import { LeasesPanel } from "./queue/LeasesPanel";
 import { QueuePanel } from "./queue/QueuePanel";
+import { SkipsPanel } from "./queue/SkipsPanel";
 import { RoundsPanel } from "./rounds/RoundsPanel";
 import { StagesPanel } from "./stages/StagesPanel";
 import { useOpsHistory } from "./useOpsHistory";
@@ -40,6 +41,7 @@ export function OperationsRoom({ collectionId }: RoomProps) {
         <FailuresPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
         {hasFigures && <QueuePanel ops={ops.data} history={history} />}
         <LeasesPanel collectionId={collectionId} />
+        <SkipsPanel collectionId={collectionId} className={styles.whole} />
         <PeoplePanel collectionId={collectionId} className={styles.whole} />
         <RoundsPanel collectionId={collectionId} ops={ops.data} className={styles.whole} />
         {hasFigures && <StoragePanel ops={ops.data} className={styles.whole} />}

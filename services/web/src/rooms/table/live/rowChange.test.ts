@@ -28,7 +28,8 @@ describe("rowChangeOf", () => {
     event("queue", { re_ranked: 40 }),
     event("training", { model_version: 4 }),
     event("job", { job_id: 1, job_kind: "evaluate", state: "done" }),
-  ])("a new model, new ranks and a finished job concern all rows: $kind", (each) => {
+    event("shape", { what: "parts changed", schema_version: 2 }),
+  ])("a new model, new ranks, other parts and a finished job concern all rows: $kind", (each) => {
     expect(rowChangeOf(each)).toBe("all");
   });
 

@@ -11,6 +11,7 @@ export function rowChangeOf(event: ServiceEvent): RowChange | null {
   const { kind, payload } = event;
   const shapeId = payload.shape_id;
   if (typeof shapeId === "number") return { shapeId, known: kind === "shape" ? knownOf(payload) : {} };
+  if (kind === "shape") return "all"; // of many at once
   if (kind === "queue") return "re_ranked" in payload ? "all" : null;
   if (kind === "training") return "model_version" in payload ? "all" : null;
   if (kind === "stage") return "in sight"; // told every few seconds while shapes are prepared and scored
