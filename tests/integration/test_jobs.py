@@ -7,6 +7,7 @@ import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from fastapi.testclient import TestClient
 from partwise.io.write import write_mesh
 from partwise.simulate.collection import CATEGORIES, simulate_collection
 from partwise.store.records import EventKind, JobKind, JobState, NewToken, Role, ShapeState
+from partwise.testing.postgres import keep_catalog_in, postgres_database
 from partwise.workspace.ingest import ingest_folder
 from partwise.workspace.shapes import load_mesh, shape_mesh
 from partwise.workspace.workspace import Workspace, init_collection, open_workspace
@@ -92,9 +94,19 @@ class Lab:
         }
 
 
-@pytest.fixture(scope="module")
-def lab(local_ray: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+@pytest.fixture(scope="module", params=["sqlite", pytest.param("postgres", marks=pytest.mark.slow)])
+def lab(request: pytest.FixtureRequest, local_ray: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+    """On PostgreSQL with the slow tests: the stages take their time whatever the catalog is in."""
     root = tmp_path_factory.mktemp("jobs")
+    if request.param == "postgres":
+        with postgres_database(request.getfixturevalue("postgres")) as url:
+            keep_catalog_in(root / "ws", url)
+            yield from _made(root)
+    else:
+        yield from _made(root)
+
+
+def _made(root: Path) -> Iterator[Lab]:
     for shape in simulate_collection("mugs", N_SHAPES, 3, n_faces=N_FACES):
         write_mesh(shape.mesh, root / "shapes" / f"{shape.name}.off")
     init_collection(root / "ws", "mugs", CATEGORIES["mugs"].part_names, {"train_after": N_CONFIRMED})

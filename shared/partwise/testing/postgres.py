@@ -3,12 +3,15 @@
 import os
 import tempfile
 import uuid
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
 
 from sqlalchemy import Connection, create_engine, make_url, text
 
+T = TypeVar("T")
 SERVER_VARIABLE = "PARTWISE_TEST_POSTGRES"
 
 
@@ -79,6 +82,26 @@ def reused_database(server: str, template: str) -> Iterator[ReusedDatabase]:
             statements = [_NO_TRIGGERS, *_rows_again(connection), *_sequences_again(connection)]
         engine.dispose()
         yield ReusedDatabase(url, statements)
+
+
+@contextmanager
+def reused_workspace(server: str, path: Path, make: Callable[[Path], T]) -> Iterator[tuple[T, ReusedDatabase]]:
+    """What `make` makes of a workspace at `path`, and a copy of its catalog for tests to have one after the other.
+
+    make : fills the folder, whose configuration says where the catalog is. It leaves nothing open.
+    """
+    with postgres_database(server) as url:
+        keep_catalog_in(path, url)
+        made = make(path)
+        with reused_database(server, database_name(url)) as database:
+            yield made, database
+
+
+def keep_catalog_in(path: Path, url: str) -> None:
+    """Has the workspace at `path`, which need not be there yet, keep its catalog in the database."""
+    path.mkdir(exist_ok=True)
+    with (path / "partwise.toml").open("a", encoding="utf-8") as file:
+        file.write(f'[stores]\ndatabase_url = "{url}"\n')
 
 
 def _rows_again(connection: Connection) -> Iterator[str]:

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from partwise.mesh import TriMesh
 from partwise.testing.meshes import subdivided
+from partwise.testing.postgres import ReusedDatabase, reused_workspace
 from partwise.testing.workspaces import (
     ingest,
     publish_evaluation,
@@ -81,6 +82,22 @@ def templates(tmp_path_factory: pytest.TempPathFactory, tetrahedron: TriMesh) ->
     for name in ("empty", "ingested", "described", "refined"):
         made[name] = folder / name
     return made
+
+
+@pytest.fixture(scope="session")
+def postgres_described(
+    tmp_path_factory: pytest.TempPathFactory, postgres: str, tetrahedron: TriMesh
+) -> Iterator[tuple[Path, ReusedDatabase]]:
+    """The described workspace with its catalog in PostgreSQL, and a copy of that catalog for tests to use in turn."""
+
+    def make(path: Path) -> Path:
+        init_collection(path, "mugs", PARTS, {"up": "y"})
+        for name in ("ingested", "described"):
+            _bring(path, name, tetrahedron)
+        return path
+
+    with reused_workspace(postgres, tmp_path_factory.mktemp("postgres") / "ws", make) as reused:
+        yield reused
 
 
 def _bring(path: Path, name: str, tetrahedron: TriMesh) -> None:

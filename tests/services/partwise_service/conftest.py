@@ -18,13 +18,7 @@ from fastapi.testclient import TestClient
 from partwise.mesh import TriMesh
 from partwise.store.records import Collection, NewToken, Role
 from partwise.testing.meshes import subdivided
-from partwise.testing.postgres import (
-    ReusedDatabase,
-    database_name,
-    postgres_database,
-    postgres_server,
-    reused_database,
-)
+from partwise.testing.postgres import ReusedDatabase, keep_catalog_in, reused_workspace
 from partwise.testing.waiting import WITHIN_S, wait_until
 from partwise.testing.workspaces import (
     ingest,
@@ -42,17 +36,20 @@ from partwise_service.settings import ServiceSettings
 PARTS = ("body", "handle")
 BODY, HANDLE = 1, 2
 API = "/api/v1"
-DATABASES = ("sqlite", "postgres")
-ON_BOTH = {
-    "test_accepts",
-    "test_checks",
-    "test_drafts",
-    "test_drafts_kills",
-    "test_jobs",
-    "test_queue",
-    "test_reviews",
-    "test_shapes",
+ON_SQLITE_ONLY = {
+    "test_array_places": "waits for the array store, and for no database",
+    "test_compression": "looks at headers and bytes of answers that other modules get on both",
+    "test_limits": "is about requests that are refused before anything is asked of the catalog",
+    "test_openapi": "compares the document with what problems are made of; generated requests go to both databases",
+    "test_page": "serves files",
+    "test_problems": "makes documents of errors that it raises itself",
+    "test_slow_requests": "is about requests that never come whole",
+    "test_tools": "computes on meshes; which shapes and drafts there are is asked as other modules do",
+    "test_tools_socket": "as test_tools",
 }
+"""Modules whose tests need not run on both databases, and why."""
+SLOW_ON_POSTGRES = {"test_client_from_scratch": "starts services and clients, several seconds each, for the docs' sake"}
+"""Modules that run on PostgreSQL with `make test-slow`, and why."""
 ORIGIN = "http://127.0.0.1:8000"
 
 
@@ -104,10 +101,13 @@ class Caller:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Tests of what depends on how a database locks, orders and types run on SQLite and on PostgreSQL."""
+    """Databases lock, order and type differently: what runs on SQLite runs on PostgreSQL, unless there is a reason."""
     if "database" in metafunc.fixturenames:
-        is_both = metafunc.module.__name__.rpartition(".")[2] in ON_BOTH
-        metafunc.parametrize("database", DATABASES if is_both else DATABASES[:1], indirect=True)
+        module = metafunc.module.__name__.rpartition(".")[2]
+        on_postgres = pytest.param("postgres", marks=[pytest.mark.slow] if module in SLOW_ON_POSTGRES else [])
+        metafunc.parametrize(
+            "database", ["sqlite"] if module in ON_SQLITE_ONLY else ["sqlite", on_postgres], indirect=True
+        )
 
 
 @pytest.fixture(scope="session")
@@ -117,26 +117,10 @@ def template(tmp_path_factory: pytest.TempPathFactory) -> Mugs:
 
 
 @pytest.fixture(scope="session")
-def postgres() -> Iterator[str]:
-    """URL of a PostgreSQL server."""
-    with postgres_server() as url:
-        yield url
-
-
-@pytest.fixture(scope="session")
 def postgres_template(tmp_path_factory: pytest.TempPathFactory, postgres: str) -> Iterator[tuple[Mugs, ReusedDatabase]]:
     """The same workspace with its catalog in PostgreSQL, and a copy of that catalog for tests to use in turn."""
-    path = tmp_path_factory.mktemp("service-postgres") / "ws"
-    with postgres_database(postgres) as url:
-        _write_config(path, url)
-        mugs = _made(path)
-        with reused_database(postgres, database_name(url)) as database:
-            yield mugs, database
-
-
-def _write_config(path: Path, database_url: str) -> None:
-    path.mkdir()
-    (path / "partwise.toml").write_text(f'[stores]\ndatabase_url = "{database_url}"\n')
+    with reused_workspace(postgres, tmp_path_factory.mktemp("service-postgres") / "ws", _made) as reused:
+        yield reused
 
 
 def _made(path: Path) -> Mugs:
@@ -189,7 +173,7 @@ def mugs(database: str, request: pytest.FixtureRequest, tmp_path: Path) -> Itera
         return
     template, reused = request.getfixturevalue("postgres_template")
     reused.restore()
-    _write_config(path, reused.url)
+    keep_catalog_in(path, reused.url)
     yield _beside(template, path)
 
 

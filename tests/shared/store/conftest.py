@@ -14,7 +14,6 @@ from partwise.testing.postgres import (
     ReusedDatabase,
     database_name,
     postgres_database,
-    postgres_server,
     reused_database,
 )
 
@@ -45,22 +44,15 @@ def store(tmp_path: Path) -> ZarrArrayStore:
 
 
 @pytest.fixture(scope="session")
-def server() -> Iterator[str]:
-    """URL of a PostgreSQL server."""
-    with postgres_server() as url:
-        yield url
-
-
-@pytest.fixture(scope="session")
-def migrated_database(server: str) -> Iterator[str]:
-    with postgres_database(server) as url:
+def migrated_database(postgres: str) -> Iterator[str]:
+    with postgres_database(postgres) as url:
         create_catalog(url).close()
         yield url
 
 
 @pytest.fixture(scope="session")
-def reused(server: str, migrated_database: str) -> Iterator[ReusedDatabase]:
-    with reused_database(server, database_name(migrated_database)) as database:
+def reused(postgres: str, migrated_database: str) -> Iterator[ReusedDatabase]:
+    with reused_database(postgres, database_name(migrated_database)) as database:
         yield database
 
 
@@ -72,7 +64,7 @@ def postgres_catalog(reused: ReusedDatabase) -> Iterator[SqlCatalog]:
 
 
 @pytest.fixture
-def empty_database(server: str) -> Iterator[str]:
+def empty_database(postgres: str) -> Iterator[str]:
     """URL of a PostgreSQL database without a catalog."""
-    with postgres_database(server) as url:
+    with postgres_database(postgres) as url:
         yield url

@@ -1,4 +1,4 @@
-"""A workspace of three small shapes, brought as far as each test needs without Ray.
+"""A workspace of three small shapes, brought as far as each test needs without Ray, on SQLite and on PostgreSQL.
 
 The empty workspace is made once and copied, because migrating its catalog takes longest.
 """
@@ -14,6 +14,7 @@ import pytest
 from partwise.mesh import TriMesh
 from partwise.store.records import Collection, Model, Shape
 from partwise.testing.meshes import subdivided
+from partwise.testing.postgres import ReusedDatabase, keep_catalog_in, reused_workspace
 from partwise.testing.workspaces import (
     ingest,
     publish_evaluation,
@@ -24,6 +25,15 @@ from partwise.testing.workspaces import (
 )
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 
+DATABASES = ("sqlite", "postgres")
+ON_SQLITE_ONLY = {
+    "test_export": "is about the files of every format; test_export_archive selects the same labels on both",
+    "test_original_faces": "moves labels between meshes",
+    "test_partnet_folders": "reads folders",
+    "test_uploads": "keeps files in the array store",
+    "test_workspace": "is about the workspace's files, its catalog among them",
+}
+"""Modules whose tests need not run on both databases, and why."""
 PARTS = ("body", "handle")
 BODY, HANDLE = 1, 2
 
@@ -65,6 +75,18 @@ class Filled:
         publish_refinement(self.workspace, model, labels)
 
 
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    if "database" in metafunc.fixturenames:
+        is_one = metafunc.module.__name__.rpartition(".")[2] in ON_SQLITE_ONLY
+        metafunc.parametrize("database", DATABASES[:1] if is_one else DATABASES, indirect=True)
+
+
+@pytest.fixture
+def database(request: pytest.FixtureRequest) -> str:
+    """`sqlite` or `postgres`."""
+    return str(request.param)
+
+
 @pytest.fixture(scope="session")
 def empty_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("template") / "ws"
@@ -72,9 +94,22 @@ def empty_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.fixture(scope="session")
+def reused(tmp_path_factory: pytest.TempPathFactory, postgres: str) -> Iterator[ReusedDatabase]:
+    """The catalog of an empty workspace."""
+    with reused_workspace(postgres, tmp_path_factory.mktemp("postgres") / "ws", init_workspace) as (_, database):
+        yield database
+
+
 @pytest.fixture
-def path(empty_workspace: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(empty_workspace, tmp_path / "ws"))
+def path(database: str, request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    path = tmp_path / "ws"
+    if database == "sqlite":
+        return Path(shutil.copytree(request.getfixturevalue("empty_workspace"), path))
+    reused: ReusedDatabase = request.getfixturevalue("reused")
+    reused.restore()
+    keep_catalog_in(path, reused.url)
+    return path
 
 
 @pytest.fixture

@@ -1,5 +1,6 @@
-"""A workspace whose jobs are what a test says, and workers on it."""
+"""A workspace whose jobs are what a test says, and workers on it; on SQLite and on PostgreSQL."""
 
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 
 from partwise.config import JobsConfig
 from partwise.store.records import Job, JobKind
+from partwise.testing.postgres import keep_catalog_in
 from partwise.workspace.workspace import Workspace, open_workspace
 from partwise_cli.jobs.cluster import Cluster
 from partwise_cli.jobs.work import Handler
@@ -16,6 +18,18 @@ from partwise_cli.jobs.worker import Worker
 
 QUICK = JobsConfig(poll_s=0.01, pulse_s=0.02, lost_after_s=1.0)
 MakeWorker = Callable[..., Worker]
+
+
+@pytest.fixture(params=["sqlite", "postgres"])
+def described(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    path = tmp_path / "ws"
+    if request.param == "sqlite":
+        return Path(shutil.copytree(request.getfixturevalue("templates")["described"], path))
+    template, reused = request.getfixturevalue("postgres_described")
+    reused.restore()
+    keep_catalog_in(path, reused.url)
+    shutil.copytree(template / "arrays", path / "arrays")
+    return path
 
 
 @pytest.fixture
