@@ -268,7 +268,7 @@ def test_names_are_searched_from_the_keyboard(enter: Enter, recorded: Recorded) 
 
 def test_shapes_are_picked_on_the_map_and_put_first(enter: Enter, recorded: Recorded) -> None:
     page = enter("lena", "reviewer", "table?panel=map")
-    canvas = page.get_by_role("img", name=re.compile("^Map of 8 shapes"))
+    canvas = page.get_by_role("application", name=re.compile("^Map of 8 shapes"))
     expect(canvas).to_be_visible()
     page.get_by_role("radio", name="Rectangle").check(force=True)
     box = canvas.bounding_box()

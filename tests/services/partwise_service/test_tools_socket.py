@@ -1,6 +1,9 @@
 """Tools through a real server: a client that hangs up takes its call out of the line."""
 
+import socket
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -24,13 +27,11 @@ def test_a_client_that_hangs_up_takes_its_call_out_of_the_line(served, app, mugs
     headers = _headers(catalog)
     path, body = f"/shapes/{mugs.ids['b.off']}/patches", {"n_patches": 5, "method": "k_means"}
     process = tools._idle.popleft()  # busy with something that takes long
-    with httpx.Client(base_url=served, headers=headers, timeout=WITHIN_S) as client:
-        impatient = threading.Thread(target=_given_up, args=(served, headers, path, body))
-        impatient.start()
+    with _asked(served, headers, path, body):
         wait_until(lambda: tools.n_waiting == 1)
-        impatient.join(WITHIN_S)
-        wait_until(lambda: tools.n_waiting == 0)
-        tools._idle.append(process)
+    wait_until(lambda: tools.n_waiting == 0)
+    tools._idle.append(process)
+    with httpx.Client(base_url=served, headers=headers, timeout=WITHIN_S) as client:
         answer = client.post(path, json=body)
     assert (answer.status_code, answer.json()["n_faces"]) == (200, mugs.meshes["b.off"].n_faces)
     assert tools.n_idle == 1
@@ -44,7 +45,8 @@ def test_a_client_that_hangs_up_ends_its_call_that_runs(served, app, mugs) -> No
     process._answering = never_answer
     headers = _headers(catalog)
     path, body = f"/shapes/{mugs.ids['b.off']}/patches", {"n_patches": 5, "method": "k_means"}
-    _given_up(served, headers, path, body)
+    with _asked(served, headers, path, body):
+        wait_until(lambda: tools.n_idle == 0)
     wait_until(lambda: tools.n_idle == 1)
     process._answering = answer_calls
     with httpx.Client(base_url=served, headers=headers, timeout=WITHIN_S) as client:
@@ -62,6 +64,12 @@ def _headers(catalog) -> dict[str, str]:
     return {"Authorization": f"Bearer {catalog.issue_token(new, 'test').secret}", "Accept": "application/json"}
 
 
-def _given_up(url: str, headers: dict, path: str, body: dict) -> None:
-    with httpx.Client(base_url=url, headers=headers, timeout=2.0) as client, pytest.raises(httpx.ReadTimeout):
-        client.post(path, json=body)
+@contextmanager
+def _asked(url: str, headers: dict, path: str, body: dict) -> Iterator[None]:
+    """A request that was sent, whose client hangs up without having read an answer."""
+    address = httpx.URL(url)
+    request = httpx.Client().build_request("POST", url + path, headers=headers, json=body)
+    lines = [f"POST {address.path}{path} HTTP/1.1", *(f"{name}: {value}" for name, value in request.headers.items())]
+    with socket.create_connection((address.host, address.port), timeout=WITHIN_S) as connection:
+        connection.sendall("\r\n".join([*lines, "", ""]).encode() + request.content)
+        yield

@@ -266,7 +266,7 @@ def test_strokes_that_came_after_their_draft_was_closed_are_put_on_the_next_one(
     away.page.context.set_offline(True)
     paint(away, 0, 1)
     expect(away.save_state).to_have_text("Offline: 2 queued")
-    home = log_in("zoe")
+    home = log_in("zoe", expects_errors=True)  # 409, should the other window have renewed the lease first
     home.open(lease["shape_id"])
     home.page.keyboard.press("Enter")
     home.until(lambda: home.get(f"/drafts/{draft_id}")["outcome"] == "confirmed")
