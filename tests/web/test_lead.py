@@ -270,7 +270,9 @@ def test_shapes_are_picked_on_the_map_and_put_first(enter: Enter, recorded: Reco
     page = enter("lena", "reviewer", "table?panel=map")
     canvas = page.get_by_role("application", name=re.compile("^Map of 8 shapes"))
     expect(canvas).to_be_visible()
-    page.get_by_role("radio", name="Rectangle").check(force=True)
+    rectangle = page.get_by_role("radio", name="Rectangle")
+    rectangle.click(force=True)
+    expect(rectangle).to_be_checked()
     box = canvas.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 1, box["y"] + 1)
