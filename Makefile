@@ -21,10 +21,10 @@ NPM := PATH="$(NODE)/bin:$$PATH" $(NODE)/bin/node $(NODE)/lib/node_modules/npm/b
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup web demo test test-slow check format bench clean
+.PHONY: help setup web demo test test-postgres test-slow check format bench clean
 
 help: ## what there is
-	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 15
 
 setup: $(INSTALLED) ## the virtual environment with the locked packages
 
@@ -54,6 +54,9 @@ demo: $(INSTALLED) $(if $(SERVE),$(PAGE)) ## the whole way of 40 simulated chair
 test: $(INSTALLED) $(PAGE) ## the everyday tests
 	$(NPM) run --silent test
 	$(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder
+
+test-postgres: $(INSTALLED) ## tests of the service, of jobs and of workspaces once more, on PostgreSQL
+	$(BIN)/python -m pytest -m again_on_postgres --numprocesses 3 --dist loadfile --no-loadscope-reorder
 
 test-slow: $(INSTALLED) ## kill loops and soaks
 	$(BIN)/python -m pytest -m slow

@@ -36,6 +36,7 @@ from partwise_service.settings import ServiceSettings
 PARTS = ("body", "handle")
 BODY, HANDLE = 1, 2
 API = "/api/v1"
+DATABASES = ("sqlite", pytest.param("postgres", marks=pytest.mark.again_on_postgres))
 ON_SQLITE_ONLY = {
     "test_array_places": "waits for the array store, and for no database",
     "test_compression": "looks at headers and bytes of answers that other modules get on both",
@@ -48,8 +49,6 @@ ON_SQLITE_ONLY = {
     "test_tools_socket": "as test_tools",
 }
 """Modules whose tests need not run on both databases, and why."""
-SLOW_ON_POSTGRES = {"test_client_from_scratch": "starts services and clients, several seconds each, for the docs' sake"}
-"""Modules that run on PostgreSQL with `make test-slow`, and why."""
 ORIGIN = "http://127.0.0.1:8000"
 
 
@@ -103,11 +102,8 @@ class Caller:
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Databases lock, order and type differently: what runs on SQLite runs on PostgreSQL, unless there is a reason."""
     if "database" in metafunc.fixturenames:
-        module = metafunc.module.__name__.rpartition(".")[2]
-        on_postgres = pytest.param("postgres", marks=[pytest.mark.slow] if module in SLOW_ON_POSTGRES else [])
-        metafunc.parametrize(
-            "database", ["sqlite"] if module in ON_SQLITE_ONLY else ["sqlite", on_postgres], indirect=True
-        )
+        is_one = metafunc.module.__name__.rpartition(".")[2] in ON_SQLITE_ONLY
+        metafunc.parametrize("database", DATABASES[:1] if is_one else DATABASES, indirect=True)
 
 
 @pytest.fixture(scope="session")

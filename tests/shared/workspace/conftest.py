@@ -25,7 +25,7 @@ from partwise.testing.workspaces import (
 )
 from partwise.workspace.workspace import Workspace, init_workspace, open_workspace
 
-DATABASES = ("sqlite", "postgres")
+DATABASES = ("sqlite", pytest.param("postgres", marks=pytest.mark.again_on_postgres))
 ON_SQLITE_ONLY = {
     "test_export": "is about the files of every format; test_export_archive selects the same labels on both",
     "test_original_faces": "moves labels between meshes",

@@ -20,7 +20,7 @@ QUICK = JobsConfig(poll_s=0.01, pulse_s=0.02, lost_after_s=1.0)
 MakeWorker = Callable[..., Worker]
 
 
-@pytest.fixture(params=["sqlite", "postgres"])
+@pytest.fixture(params=["sqlite", pytest.param("postgres", marks=pytest.mark.again_on_postgres)])
 def described(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     path = tmp_path / "ws"
     if request.param == "sqlite":
