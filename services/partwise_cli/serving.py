@@ -4,6 +4,7 @@ import gc
 import logging
 import os
 import socket
+import sys
 from collections.abc import Callable
 from functools import partial
 
@@ -22,6 +23,10 @@ from partwise_service.settings import ServiceSettings
 STOP_S = 5
 SILENT_S = 60
 """Seconds after which a process that says nothing is replaced: more than a busy machine takes to load one."""
+
+SWITCH_S = 0.0005
+"""How long a thread computes before another may: a request has the interpreter back after each of its statements, and would
+wait 5 ms each time that some thread folds strokes."""
 
 
 def serve_on(settings: ServiceSettings, listener: socket.socket) -> None:
@@ -70,4 +75,5 @@ def _app(settings: ServiceSettings, parent_id: int | None) -> FastAPI:
     app = create_app(settings)
     gc.collect()
     gc.freeze()  # what is there by now stays: going through it again and again would hold requests up
+    sys.setswitchinterval(SWITCH_S)
     return app

@@ -124,9 +124,14 @@ def renew(
 
 def refuse_another(connection: Connection, person_id: int) -> None:
     """Let nobody hold more than `MAX_HELD` shapes beside the prefetched one."""
-    held = [each for each in leases_of(connection, person_id) if not each.is_prefetched]
-    if len(held) >= MAX_HELD:
-        name = select(t.shape.c.source_key).where(t.shape.c.id.in_([each.shape_id for each in held]))
+    refuse_more(connection, leases_of(connection, person_id))
+
+
+def refuse_more(connection: Connection, held: Sequence[Lease]) -> None:
+    """As `refuse_another`. held : all that the person holds."""
+    at_hand = [each.shape_id for each in held if not each.is_prefetched]
+    if len(at_hand) >= MAX_HELD:
+        name = select(t.shape.c.source_key).where(t.shape.c.id.in_(at_hand))
         shapes = ", ".join(connection.scalars(name.order_by(t.shape.c.id)))
         raise ConflictError(
             f"a person holds at most {MAX_HELD} shapes and holds {shapes}; confirm or release one first"

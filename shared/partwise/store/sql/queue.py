@@ -29,13 +29,14 @@ def claim_next(connection: Connection, claim: NewClaim, now: datetime) -> Lease 
     settings = collection_queue_settings(connection, claim.collection_id)
     leases.person_name(connection, claim.person_id, for_update=True)
     events = leases.expire(connection, claim.person_id, now)
-    ahead = next((each for each in leases.leases_of(connection, claim.person_id) if each.is_prefetched), None)
+    held = leases.leases_of(connection, claim.person_id)
+    ahead = next((each for each in held if each.is_prefetched), None)
     taken: Lease | None
     if ahead is not None and ahead.collection_id == claim.collection_id:
         taken = leases.renew(connection, ahead.id, claim.person_id, claim.lease_s, claim.is_prefetch, now)
     else:
         if not claim.is_prefetch:
-            leases.refuse_another(connection, claim.person_id)
+            leases.refuse_more(connection, held)
         elif ahead is not None:  # one is loaded ahead, of the collection that the person is at now
             own = leases.own_active(connection, ahead.id, claim.person_id)
             events.append(leases.end(connection, own, LeaseOutcome.RELEASED, now)[1])
