@@ -25,8 +25,8 @@ SILENT_S = 60
 """Seconds after which a process that says nothing is replaced: more than a busy machine takes to load one."""
 
 SWITCH_S = 0.0005
-"""How long a thread computes before another may: a request has the interpreter back after each of its statements, and would
-wait 5 ms each time that some thread folds strokes."""
+"""How long a thread computes before another may. A request waits for the interpreter after each of its statements: by
+default 5 ms each time, while some thread folds strokes."""
 
 
 def serve_on(settings: ServiceSettings, listener: socket.socket) -> None:
