@@ -4,6 +4,8 @@ import type { StrokeJson } from "../labels/strokes";
 import type { DraftTransport } from "./transport";
 
 const PAGE = 5_000;
+/** Many strokes take long to fold. */
+const CONFIRMED_MS = 90_000;
 
 export const httpTransport: DraftTransport = {
   append: (draftId, expectedSequence, strokes, signal) =>
@@ -37,6 +39,7 @@ export const httpTransport: DraftTransport = {
     await api.POST("/api/v1/drafts/{draft_id}/confirm", {
       params: { path: { draft_id: draftId }, header: { "if-match": `"${nStrokes}"` } },
       body: { labels_sha256: labelsSha256 },
+      signal: AbortSignal.timeout(CONFIRMED_MS),
     });
   },
   async acknowledge(draftId, revisionId) {

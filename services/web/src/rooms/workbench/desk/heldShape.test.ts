@@ -125,4 +125,13 @@ describe("a shape that could not be opened", () => {
     await shape.retry(opening);
     expect(shape.open?.canEdit).toBe(true);
   });
+
+  it("since nothing was known of it opens once that can be read", async () => {
+    vi.mocked(fetchFacts).mockRejectedValueOnce(new Error("cut"));
+    const shape = held();
+    await shape.begin(opening);
+    expect(shape.state.get()).toEqual({ step: "failed", why: "cut" });
+    await shape.retry(opening);
+    expect(shape.open?.canEdit).toBe(true);
+  });
 });

@@ -126,7 +126,7 @@ export class HeldShape {
     try {
       await this.takenUp();
       if (this.isClosed) return;
-      this.drafting ??= loading.facts.then((facts) => this.drafted(facts));
+      this.drafting ??= this.draftedOnce(loading.facts);
       const [model, { draft, base }, start] = await Promise.all([
         loading.model,
         this.drafting,
@@ -233,6 +233,15 @@ export class HeldShape {
     return this.isNamed || this.reworkNote.get() !== null;
   }
 
+  /** Forgotten where it fails, so that trying again opens a draft anew. */
+  private draftedOnce(facts: Promise<ShapeFacts>): Promise<Drafted> {
+    const drafting = facts.then((known) => this.drafted(known));
+    drafting.catch(() => {
+      this.drafting = null;
+    });
+    return drafting;
+  }
+
   private async drafted(facts: ShapeFacts): Promise<Drafted> {
     let draft: Draft | null = null;
     try {
@@ -241,7 +250,6 @@ export class HeldShape {
       return { draft, base: base_revision === null ? null : await fetchDraftBase(id) };
     } catch (error) {
       await draft?.close(); // else it would keep the right to edit from whoever tries again
-      this.drafting = null;
       throw error;
     }
   }
