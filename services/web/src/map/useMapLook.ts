@@ -17,9 +17,9 @@ const FIRST_LOOK: MapLook = { tool: "move", colouring: "cluster", camera: null }
 const lookQuery = (collectionId: number) =>
   queryOptions({
     queryKey: ["map look", collectionId],
-    queryFn: () => FIRST_LOOK,
+    queryFn: ({ client, queryKey }) => client.getQueryData<MapLook>(queryKey) ?? FIRST_LOOK,
     initialData: FIRST_LOOK,
-    staleTime: Number.POSITIVE_INFINITY,
+    staleTime: "static",
     gcTime: Number.POSITIVE_INFINITY,
   });
 
