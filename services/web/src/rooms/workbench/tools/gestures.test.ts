@@ -1,4 +1,5 @@
 import { beforeEach, describe, expect, it } from "vitest";
+import { Observable } from "../../../drafts/observable";
 import { SurfaceMesh } from "../../../geometry/surfaceMesh";
 import type { Operation } from "../../../labels/operations";
 import type { BrushCircle, Hit, ShapeModel } from "../../../viewer/shapeModel";
@@ -25,6 +26,7 @@ interface FakeShape {
   readonly labels: Uint16Array;
   readonly done: Operation[];
   readonly perform: (operation: Operation) => void;
+  readonly version: Observable<number>;
   canEdit: boolean;
 }
 
@@ -61,7 +63,8 @@ function fakeShape(): FakeShape {
   } as unknown as ShapeModel;
   const done: Operation[] = [];
   const perform = (operation: Operation) => void done.push(operation);
-  return { model, shown, done, perform, labels: new Uint16Array(N_FACES), canEdit: true };
+  const version = new Observable(0);
+  return { model, shown, done, perform, version, labels: new Uint16Array(N_FACES), canEdit: true };
 }
 
 /** Another shape comes into the view. */
@@ -184,6 +187,56 @@ describe("a drag", () => {
     showAnother();
     gestures.strokeCancel();
     expect(first.shown.preview).toEqual([]);
+  });
+});
+
+describe("a press", () => {
+  beforeEach(() => open.labels.fill(2, 20));
+
+  it("gives its whole segment the part in hand once it ends, wherever it is let go", () => {
+    shelf.change({ tool: "segment", part: 3 });
+    gestures.strokeStart(hitOf(4));
+    gestures.strokeMove([hitOf(30), hitOf(4)]);
+    expect(open.done).toEqual([]);
+    gestures.strokeEnd();
+    expect(open.done).toEqual([{ kind: "segment_wide", seed: 4, label: 3 }]);
+    expect(open.shown.preview).toEqual([]);
+  });
+
+  it("shows the segment that it will take", () => {
+    shelf.change({ tool: "segment" });
+    gestures.strokeStart(hitOf(20));
+    expect(open.shown.preview.toSorted((a, b) => a - b)).toEqual(
+      Array.from({ length: 20 }, (_, at) => 20 + at),
+    );
+  });
+
+  it("picks the part under it once it ends", () => {
+    shelf.change({ tool: "pick" });
+    gestures.strokeStart(hitOf(30));
+    expect(shelf.settings.get().tool).toBe("pick");
+    gestures.strokeEnd();
+    expect(shelf.settings.get()).toMatchObject({ tool: "paint", part: 2 });
+  });
+
+  it.each(["segment", "pick"] as const)("that a second finger makes a pinch does nothing with %s", (tool) => {
+    shelf.change({ tool });
+    const before = shelf.settings.get();
+    gestures.strokeStart(hitOf(30));
+    gestures.strokeCancel();
+    gestures.strokeEnd();
+    expect([open.done, open.shown.preview]).toEqual([[], []]);
+    expect(shelf.settings.get()).toEqual(before);
+  });
+
+  it("of a key acts at the middle of the view", () => {
+    view.centreHit = () => hitOf(30);
+    shelf.change({ tool: "segment", part: 3 });
+    expect(gestures.pressAtCentre()).toBeNull();
+    expect(open.done).toEqual([{ kind: "segment_wide", seed: 30, label: 3 }]);
+    shelf.change({ tool: "pick" });
+    expect(gestures.pressAtCentre()).toBeNull();
+    expect(shelf.settings.get()).toMatchObject({ tool: "paint", part: 2 });
   });
 });
 

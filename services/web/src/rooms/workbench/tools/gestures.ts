@@ -28,8 +28,8 @@ interface SurfaceDrag {
   readonly open: OpenShape;
   /** Faces that a further hit adds to it, ascending. */
   take(face: number): Uint32Array;
-  /** What it comes to. */
-  operation(): Operation;
+  /** Does what it comes to: only now, since a second finger may yet make a pinch of it. */
+  finish(): void;
 }
 
 const SPACING = 0.25;
@@ -76,10 +76,8 @@ export class ToolGestures implements ViewListener {
     const { tool } = this.settings;
     if (tool === "paint") this.begin(this.painting(open), hit);
     else if (tool === "patches") this.begin(this.takingPatches(open), hit);
-    else if (tool === "segment")
-      this.done(open, { kind: "segment_wide", seed: hit.face, label: this.settings.part });
-    else if (tool === "pick")
-      this.context.shelf.change({ part: open.labels[hit.face] as number, tool: "paint" });
+    else if (tool === "segment") this.begin(this.takingRegion(open, hit.face), hit);
+    else if (tool === "pick") this.begin(this.pickingPart(open, hit.face), hit);
   }
 
   strokeMove(hits: readonly Hit[]): void {
@@ -90,7 +88,7 @@ export class ToolGestures implements ViewListener {
   strokeEnd(): void {
     const drag = this.goingOn();
     this.drag = null;
-    if (drag !== null) this.done(drag.open, drag.operation());
+    drag?.finish();
   }
 
   strokeCancel(): void {
@@ -135,7 +133,8 @@ export class ToolGestures implements ViewListener {
     return {
       open,
       take: (face) => faces.click(face),
-      operation: () => ({ kind: "paint", ...brush, label: part, only_over: onlyOver, seeds: faces.seeds }),
+      finish: () =>
+        this.done(open, { kind: "paint", ...brush, label: part, only_over: onlyOver, seeds: faces.seeds }),
     };
   }
 
@@ -150,7 +149,25 @@ export class ToolGestures implements ViewListener {
       for (const each of faces) taken.add(each);
       return faces;
     };
-    return { open, take, operation: () => ({ kind: "assign", runs: runsOf(taken), label: part }) };
+    const finish = () => this.done(open, { kind: "assign", runs: runsOf(taken), label: part });
+    return { open, take, finish };
+  }
+
+  private takingRegion(open: OpenShape, seed: number): SurfaceDrag {
+    const { part } = this.settings;
+    return {
+      open,
+      take: (face) => (face === seed ? this.regionAt(open, seed) : NO_FACES),
+      finish: () => this.done(open, { kind: "segment_wide", seed, label: part }),
+    };
+  }
+
+  private pickingPart(open: OpenShape, face: number): SurfaceDrag {
+    const finish = () => {
+      open.model.setPreview(null);
+      this.context.shelf.change({ part: open.labels[face] as number, tool: "paint" });
+    };
+    return { open, take: () => NO_FACES, finish };
   }
 
   private brush(): Brush {
@@ -169,13 +186,15 @@ export class ToolGestures implements ViewListener {
     const { tool } = this.settings;
     if (tool === "paint") return clickedFaces(open.model.mesh, hit.face, this.brush(), this.opened(open));
     if (tool === "patches") return this.context.patches()?.around(hit.face) ?? null;
-    if (tool !== "segment") return null;
+    return tool === "segment" ? this.regionAt(open, hit.face) : null;
+  }
+
+  private regionAt(open: OpenShape, face: number): Uint32Array {
     const version = open.version.get();
-    const isKnown = this.region?.version === version && this.region.faces.includes(hit.face);
-    if (!isKnown) {
-      this.region = { version, faces: regionOf(open.model.mesh.graph, open.labels, hit.face) };
-    }
-    return this.region?.faces ?? null;
+    if (this.region?.version === version && this.region.faces.includes(face)) return this.region.faces;
+    const faces = regionOf(open.model.mesh.graph, open.labels, face);
+    this.region = { version, faces };
+    return faces;
   }
 
   /** The pointer was on a shape that is no longer in the view. */
