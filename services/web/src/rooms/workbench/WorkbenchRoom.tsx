@@ -71,7 +71,7 @@ function Opened(props: { opened: OpenedDesk | null; parts: readonly Part[]; shel
           title="No shape to work on"
           actions={
             <>
-              <Button onClick={() => void desk.start([])}>Try again</Button>
+              <Button onClick={() => void desk.startAgain()}>Try again</Button>
               <Button onClick={() => void desk.takeNext()}>Take the next of the queue</Button>
             </>
           }

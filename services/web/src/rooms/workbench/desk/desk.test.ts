@@ -16,9 +16,14 @@ class FakeQueue {
   isDown = false;
   /** Does not answer for now. */
   isSlow = false;
+  /** Does not say what is held. */
+  isHeldUnknown = false;
 
   readonly api = {
-    held: async () => this.held.map(({ shapeId, isPrefetched }) => leased(shapeId, isPrefetched)),
+    held: async () => {
+      if (this.isHeldUnknown) throw new Unreachable("down");
+      return this.held.map(({ shapeId, isPrefetched }) => leased(shapeId, isPrefetched));
+    },
     next: async (_collection: number, isPrefetch: boolean) => {
       if (this.isDown) throw new Unreachable("down");
       const ahead = this.held.find((each) => each.isPrefetched);
@@ -32,6 +37,7 @@ class FakeQueue {
       return leased(shapeId, isPrefetch);
     },
     named: async (_collection: number, shapeIds: number[]) => {
+      if (this.isDown) throw new Unreachable("down");
       const free = shapeIds.filter((id) => this.waiting.includes(id));
       if (free.length === 0) throw conflict("shape is with Ben");
       this.waiting = this.waiting.filter((id) => !free.includes(id));
@@ -200,6 +206,37 @@ describe("a desk", () => {
     queue.isDown = false;
     await desk.takeNext();
     expect(current(desk)).toBe(1);
+  });
+
+  it("shows a shape that it was given by name, though it is not told what else is held", async () => {
+    queue.isHeldUnknown = true;
+    const desk = await started([3, 7]);
+    expect(desk.state.get().phase).toBe("working");
+    expect([current(desk), inHand(desk)]).toEqual([3, [3]]);
+    expect(desk.state.get().refused).toEqual([{ shape_id: 7, why: "taken" }]);
+  });
+
+  it("asks for the same shapes again where none could be had", async () => {
+    queue.isDown = true;
+    const desk = await started([3, 2]);
+    queue.isDown = false;
+    const starting = desk.startAgain();
+    expect(desk.state.get().phase).toBe("opening");
+    await starting;
+    expect([current(desk), inHand(desk)]).toEqual([3, [3, 2]]);
+  });
+
+  it("asks no more for shapes that it had, once they are done", async () => {
+    queue.waiting = [3, 1];
+    const desk = await started([3]);
+    await desk.skip(desk.state.get().current as HeldShape, "broken");
+    queue.isDown = true;
+    await desk.skip(desk.state.get().current as HeldShape, "broken");
+    expect(desk.state.get().phase).toBe("failed");
+    queue.isDown = false;
+    queue.waiting = [2, 3];
+    await desk.startAgain();
+    expect(current(desk)).toBe(2);
   });
 
   it("keeps a shape that was taken away in sight, but not one that was only loaded ahead", async () => {

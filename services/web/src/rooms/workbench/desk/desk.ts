@@ -34,6 +34,8 @@ export class Desk {
   onLeft: () => void = () => {};
   private ahead: HeldShape | null = null;
   private isClosed = false;
+  /** Shapes by name that are still to be had: none any more once one is in hand. */
+  private askedFor: readonly number[] = [];
 
   /** opening : asked each time, since parts and preferences change. */
   constructor(
@@ -44,14 +46,16 @@ export class Desk {
 
   /** Takes up what is held already; shapes by name, or else the next of the queue. */
   async start(named: readonly number[]): Promise<void> {
+    this.askedFor = named;
+    this.change({ phase: "opening" });
     await Promise.resolve(); // who leaves at once, as a page that is mounted twice, claims nothing
     if (this.isClosed) return;
     const since = performance.now();
     await this.attempt(async () => {
       const refused: RefusedClaim[] = [];
       if (named.length > 0) refused.push(...(await this.claimNamed(named)));
-      for (const leased of await this.parts.leases.held(this.collectionId)) this.takeHeld(leased, since);
       this.change({ refused });
+      for (const leased of await this.parts.leases.held(this.collectionId)) this.takeHeld(leased, since);
       const wanted = this.state.get().shapes.find((shape) => shape.shapeId === named[0]);
       const first = wanted ?? this.state.get().shapes[0];
       if (first !== undefined) this.show(first);
@@ -59,6 +63,11 @@ export class Desk {
       else this.change({ phase: "failed", why: refused.map((each) => each.why).join(" ") });
       void this.loadAhead();
     });
+  }
+
+  /** After `start` failed: asks for the same. */
+  startAgain(): Promise<void> {
+    return this.start(this.askedFor);
   }
 
   /** Another shape beside those in hand, or the first. */
@@ -78,6 +87,7 @@ export class Desk {
   }
 
   show(shape: HeldShape): void {
+    this.askedFor = [];
     this.change({ phase: "working", current: shape, why: null });
     this.begin(shape);
   }
@@ -233,7 +243,10 @@ export class Desk {
       await work();
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
-      if (this.state.get().shapes.length === 0) this.change({ phase: "failed", current: null, why });
+      const { phase, shapes } = this.state.get();
+      const [first] = shapes;
+      if (first === undefined) this.change({ phase: "failed", current: null, why });
+      else if (phase === "opening") this.show(first);
       else this.change({ why });
     }
   }
