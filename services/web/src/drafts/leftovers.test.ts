@@ -1,5 +1,5 @@
 import "fake-indexeddb/auto";
-import { beforeEach, describe, expect, it } from "vitest";
+import { beforeEach, describe, expect, it, vi } from "vitest";
 import { lockOf } from "./editingRight";
 import { IndexedDbOutbox } from "./indexedDbOutbox";
 import { type LeftoverParts, Leftovers } from "./leftovers";
@@ -56,6 +56,31 @@ describe("strokes of an earlier visit", () => {
     const leftovers = new Leftovers({ ...parts, tabs: { locks: null } }, person(), () => false);
     await Promise.all([leftovers.send(), leftovers.send()]);
     expect(service.nRequests).toBe(3); // the draft, its strokes, those that are sent
+  });
+
+  it("are sent, too, where they were left while others were on their way", async () => {
+    let isOpen = true;
+    const leftovers: Leftovers = new Leftovers(parts, person(), () => isOpen && leave());
+    const leave = () => {
+      isOpen = false;
+      void leftovers.send();
+      return true;
+    };
+    await leftovers.send();
+    expect(await kept()).toEqual([]);
+  });
+
+  it("of further drafts are sent though another tab took the right to edit one", async () => {
+    const stolen = new DOMException("stolen", "AbortError");
+    const request = vi.fn((_name: string) => Promise.reject(stolen));
+    parts = { ...parts, tabs: { locks: { request } as never } };
+    await parts.outbox.add(
+      { ...draftIdentity(service.record), draftId: 8, key: "further" },
+      stroke(0, "further"),
+    );
+    await send();
+    expect(request.mock.calls.map(([name]) => name)).toContain(lockOf("further"));
+    expect(request).toHaveBeenCalledTimes(2);
   });
 
   it("are not sent as somebody else's", async () => {

@@ -11,6 +11,8 @@ export interface LeftoverParts extends SenderParts {
 
 export class Leftovers {
   private isSending = false;
+  /** Something may have been left since this round began. */
+  private isAskedAgain = false;
 
   /** isAtWork : whether a draft is open here, or about to be: its own sender does it then. */
   constructor(
@@ -24,22 +26,32 @@ export class Leftovers {
    * longer be taken is set aside. What cannot be sent for now stays; so does what the person has to choose about.
    */
   async send(): Promise<void> {
+    this.isAskedAgain = true;
     if (this.isSending) return;
     this.isSending = true;
     try {
-      for (const draft of await this.parts.outbox.drafts().catch(() => [])) {
-        if (draft.personId === this.personId && !this.isAtWork(draft)) await this.sendAlone(draft);
-      }
+      while (this.isAskedAgain) await this.sendRound();
     } finally {
       this.isSending = false;
+    }
+  }
+
+  private async sendRound(): Promise<void> {
+    this.isAskedAgain = false;
+    for (const draft of await this.parts.outbox.drafts().catch(() => [])) {
+      if (draft.personId === this.personId && !this.isAtWork(draft)) await this.sendAlone(draft);
     }
   }
 
   private async sendAlone(draft: DraftIdentity): Promise<void> {
     const { locks } = this.parts.tabs;
     const send = () => sendLeftoversOf(this.parts, draft);
-    if (locks === null) await send();
-    else await locks.request(lockOf(draft.key), { ifAvailable: true }, (lock) => lock && send());
+    try {
+      if (locks === null) await send();
+      else await locks.request(lockOf(draft.key), { ifAvailable: true }, (lock) => lock && send());
+    } catch {
+      // another tab took the right to edit: the draft is open there, and its own sender goes on
+    }
   }
 }
 

@@ -22,11 +22,12 @@ export function AsidesElsewhere({ outbox, draft, onTake }: AsidesElsewhereProps)
     .filter((of) => of.personId === draft.personId && of.collectionId === draft.collectionId)
     .filter((of) => of.shapeId !== draft.shapeId);
   const meshes = new Map(others.map((of) => [of.shapeId, of.meshHash]));
-  const answers = useQueries({ queries: [...meshes.keys()].slice(0, MOST_NAMED).map(shapeQuery) });
+  const answers = useQueries({ queries: [...meshes.keys()].map(shapeQuery) });
   // another workspace may have been served here, which numbers its shapes alike
-  const shapes = answers.flatMap(({ data }) =>
-    data !== undefined && data.mesh?.mesh_hash === meshes.get(data.id) ? [data] : [],
-  );
+  const shapes = answers
+    .flatMap(({ data }) => data ?? [])
+    .filter(({ id, mesh }) => mesh?.mesh_hash === meshes.get(id))
+    .slice(0, MOST_NAMED);
   if (isLater || shapes.length === 0) return null;
   return (
     <Notice

@@ -144,16 +144,29 @@ describe("strokes that were set aside", () => {
     expect(open.draft.sender.outbox.forgetAside).not.toHaveBeenCalled();
   });
 
-  it("of other shapes are told of, with the way there, if it is the same mesh", async () => {
-    const mesh = { mesh_hash: "abc" };
+  function serveChairs(isOfAnotherWorkspace: (id: number) => boolean): void {
     vi.spyOn(api, "GET").mockImplementation((async (_path: string, { params }: never) => {
       const { shape_id: id } = (params as { path: { shape_id: number } }).path;
-      return { data: { id, source_key: `chair ${id}`, mesh: id === 8 ? { mesh_hash: "other" } : mesh } };
+      const mesh = { mesh_hash: isOfAnotherWorkspace(id) ? "other" : "abc" };
+      return { data: { id, source_key: `chair ${id}`, mesh } };
     }) as never);
+  }
+
+  it("of other shapes are told of, with the way there, if it is the same mesh", async () => {
+    serveChairs((id) => id === 8);
     asides = [7, 8].map((shapeId) => aside({ id: shapeId, draft: { ...DRAFT, shapeId } }));
     asides.push(aside({ id: 9, draft: { ...DRAFT, shapeId: 9, personId: 99 } }));
     show();
     fireEvent.click(await screen.findByRole("button", { name: /^Open/ }));
     expect(takeNamed.mock.calls).toEqual([[7]]);
+  });
+
+  it("of many other shapes name four of the same mesh, whichever come first", async () => {
+    serveChairs((id) => id < 15);
+    asides = Array.from({ length: 10 }, (_, at) => aside({ id: at, draft: { ...DRAFT, shapeId: 11 + at } }));
+    show();
+    await screen.findByRole("button", { name: "Open chair 15" });
+    const names = () => screen.getAllByRole("button", { name: /^Open/ }).map((each) => each.textContent);
+    await vi.waitFor(() => expect(names()).toEqual([15, 16, 17, 18].map((id) => `Open chair ${id}`)));
   });
 });
