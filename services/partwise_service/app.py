@@ -4,6 +4,7 @@ import re
 import time
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import replace
 from datetime import timedelta
 
 from anyio.to_thread import current_default_thread_limiter
@@ -108,6 +109,8 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
             limiter = FailureLimiter(settings.share(settings.max_auth_failures), settings.auth_window_s, clock)
             pool = ToolPool(workspace.array_url, _pool_limits(settings))
             resources.callback(pool.close)
+            replaying = ToolPool(workspace.array_url, replace(pool.limits, timeout_s=settings.replay_timeout_s))
+            resources.callback(replaying.close)
             recent = RecentlyGood(clock)
             hub = EventHub(workspace.catalog, timedelta(hours=settings.event_keep_h), recent, clock)
             await resources.enter_async_context(hub.running())
@@ -126,6 +129,7 @@ def create_app(settings: ServiceSettings, clock: Callable[[], float] = time.mono
                 hub,
                 known,
                 replays,
+                replaying,
                 streams,
                 clock,
             )

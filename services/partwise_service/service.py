@@ -21,7 +21,8 @@ from partwise_service.tool_pool import ToolPool
 class Service:
     """limiter : of failures to log in, by address and by a secret's beginning. recent : secrets good lately.
 
-    known_draft : what never changes of a draft. replays : drafts that each person has read. streams : of events that
+    known_draft : what never changes of a draft. replays : drafts that each person has read.
+    replaying : processes for strokes of drafts, which do not wait behind tools. streams : of events that
     each token has open. clock : seconds, monotone.
     """
 
@@ -36,5 +37,6 @@ class Service:
     events: EventHub
     known_draft: Callable[[int], KnownDraft]
     replays: AtOnce
+    replaying: ToolPool
     streams: AtOnce
     clock: Callable[[], float]

@@ -37,6 +37,7 @@ class ServiceSettings(BaseModel):
     lease_s : seconds for which a claim or a heartbeat holds a shape.
     tool_processes : in which tools run. max_queued_tools : calls that may wait for one; more are told to come back.
     tool_shapes : prepared shapes that each of them keeps. tool_timeout_s : after which a call is given up.
+    replay_timeout_s : after which the strokes of a draft are.
     max_uploads : that may wait in a collection. upload_ttl_h : hours after which one is gone.
     ingest_prefixes : folders by name, below which jobs may ingest; the workers read the same variable.
     page_folder : the built files of the annotation page.
@@ -69,6 +70,7 @@ class ServiceSettings(BaseModel):
     max_queued_tools: int = Field(16, ge=0, le=10_000)
     tool_shapes: int = Field(16, ge=1, le=10_000)
     tool_timeout_s: float = Field(60.0, gt=0)
+    replay_timeout_s: float = Field(900.0, gt=0)
     event_stream_s: float = Field(3600.0, ge=0)
     max_event_streams: int = Field(8, ge=1, le=10_000)
     event_keep_h: float = Field(72.0, gt=0, le=24 * 366)

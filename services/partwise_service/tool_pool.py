@@ -174,7 +174,7 @@ class ToolPool:
     """
 
     def __init__(self, array_url: str, limits: PoolLimits, answering: Answering = answer_calls) -> None:
-        self._limits = limits
+        self.limits = limits
         self._processes = [ToolProcess(array_url, limits, answering) for _ in range(limits.n_processes)]
         self._idle = deque(self._processes)
         self._line: deque[_Waiting] = deque()
@@ -206,7 +206,7 @@ class ToolPool:
             try:
                 return await asyncio.shield(running)
             except asyncio.CancelledError:
-                asyncio.get_running_loop().call_later(self._limits.abandoned_s, _give_up_unless_done, process, running)
+                asyncio.get_running_loop().call_later(self.limits.abandoned_s, _give_up_unless_done, process, running)
                 raise
 
     def close(self) -> None:
@@ -221,7 +221,7 @@ class ToolPool:
         waiting = _Waiting(person_id, mesh_hash, asyncio.get_running_loop().create_future())
         self._line.append(waiting)
         self._hand_out()
-        if not waiting.place.done() and len(self._line) > self._limits.max_queued:
+        if not waiting.place.done() and len(self._line) > self.limits.max_queued:
             self._line.remove(waiting)
             raise _unavailable(f"All tools are busy and {len(self._line)} calls wait; try again in a moment.")
         try:

@@ -44,8 +44,8 @@ async def with_draft_labels(
 ) -> Response:
     """The answer that a draft and the labels (m,) that its strokes leave make, or what reading it answers instead.
 
-    Both functions run on a thread. So does replaying, on the same visit, if it is quick; else it runs in a tool's
-    process: a single stroke of many seeds may take minutes.
+    Both functions run on a thread. So does replaying, on the same visit, if it is quick; else it runs in a
+    process for such: a single stroke of many seeds may take minutes.
 
     Problems: as `ToolPool.run`; 429 if too many drafts of this person's are being read.
     """
@@ -61,5 +61,5 @@ async def with_draft_labels(
         if isinstance(found, Response):
             return found
         call = LabelsCall(found.stored, DraftLog(found.base_labels, found.log))
-        labels = await unless_gone(request, service.tools, call, person_id)
+        labels = await unless_gone(request, service.replaying, call, person_id)
         return await in_array_place(partial(answer, found, labels))

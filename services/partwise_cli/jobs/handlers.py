@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
-from partwise.errors import NotEnoughDataError
+from partwise.errors import NotEnoughDataError, NotFoundError
 from partwise.store.records import FirstShape, JobKind, Model
 from partwise.workspace.first_shapes import select_first_shapes
 from partwise.workspace.placed_shapes import PlacedShapes, place_new_shapes, read_placed
@@ -53,7 +53,10 @@ def _embed(work: Work) -> None:
             _select(work, placed)
             return
     if placed is not None:
-        place_new_shapes(work.workspace, work.collection)
+        try:
+            place_new_shapes(work.workspace, work.collection)
+        except NotFoundError:  # what was fitted is lost: shapes are nowhere to be placed
+            _select(work, placed)
 
 
 def select(work: Work) -> Outcome:

@@ -6,6 +6,7 @@ before it is kept, as a page may be in the middle of it; older ones are deleted.
 """
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,7 +48,11 @@ def store_fit(workspace: Workspace, collection: Collection, embedding: Embedding
     stored = save(embedding.to_arrays())
     folder = f"{_folder(collection)}/{hashlib.sha256(stored).hexdigest()}"
     workspace.arrays.put_bytes(f"{folder}/{_EMBEDDING}", stored)
-    _store_placed(workspace, collection, folder, placed)
+    before = workspace.catalog.embedding(collection.id)
+    key = _put_placed(workspace, folder, placed)
+    workspace.catalog.set_embedding(collection.id, key)
+    kept = [key] if before is None else [key, before.key]
+    _sweep(workspace, _folder(collection), [f"{folder}/{_EMBEDDING}", *kept])
 
 
 def read_placed(workspace: Workspace, key: str) -> PlacedShapes | None:
@@ -86,14 +91,16 @@ def place_new_shapes(workspace: Workspace, collection: Collection) -> int:
     embedding = Embedding.from_arrays(load(workspace.arrays.get_bytes(f"{folder}/{_EMBEDDING}")))
     points = np.concatenate([embedding.project(batch) for batch in light_fields(workspace, new)])
     shape_ids = np.array([run.shape_id for run in new], dtype=np.int64)
-    if embedding_key(workspace, collection) != key:
-        return 0
     with_new = replace(
         placed,
         shape_ids=np.concatenate([placed.shape_ids, shape_ids]),
         points=np.concatenate([placed.points, points]),
     )
-    _store_placed(workspace, collection, folder, with_new)
+    with_new_key = _put_placed(workspace, folder, with_new)
+    if not workspace.catalog.set_embedding(collection.id, with_new_key, replacing=key):
+        workspace.arrays.delete(with_new_key)
+        return 0
+    _sweep(workspace, folder, [f"{folder}/{_EMBEDDING}", key, with_new_key])  # another fit may be on its way beside it
     record_clusters(workspace, collection, shape_ids, nearest_centres(points, placed.centres))
     return len(new)
 
@@ -108,18 +115,21 @@ def record_clusters(
         workspace.catalog.set_clusters(collection.id, of_shapes)
 
 
-def _store_placed(workspace: Workspace, collection: Collection, folder: str, placed: PlacedShapes) -> None:
+def _put_placed(workspace: Workspace, folder: str, placed: PlacedShapes) -> str:
+    """The key of what it has put there."""
     arrays = {"shape_ids": placed.shape_ids, "points": placed.points, "centres": placed.centres}
     stored = save({**arrays, "n_fitted": np.array([placed.n_fitted], dtype=np.int64)})
     key = f"{folder}/{hashlib.sha256(stored).hexdigest()}{_ENDING}"
-    before = workspace.catalog.embedding(collection.id)
     workspace.arrays.put_bytes(key, stored)
-    workspace.catalog.set_embedding(collection.id, key)
-    points = [key] if before is None else [key, before.key]
-    kept = (f"{folder}/{_EMBEDDING}", *(each.removesuffix(_ENDING) for each in points))
-    for stored_key in workspace.arrays.list(_folder(collection)):
-        if not stored_key.startswith(kept):
-            workspace.arrays.delete(stored_key)
+    return key
+
+
+def _sweep(workspace: Workspace, folder: str, kept: Sequence[str]) -> None:
+    """Deletes what is in the folder and not kept, nor belongs to what is."""
+    names = tuple(key.removesuffix(_ENDING) for key in kept)
+    for key in workspace.arrays.list(folder):
+        if not key.startswith(names):
+            workspace.arrays.delete(key)
 
 
 def _folder(collection: Collection) -> str:

@@ -210,7 +210,7 @@ class TestTools:
             asked.append((call, person_id))
             return np.full(call.mesh.n_faces, 2, dtype=np.uint16)
 
-        monkeypatch.setattr(app.state.service.tools, "run", run)
+        monkeypatch.setattr(app.state.service.replaying, "run", run)
         return asked
 
     def test_labels_are_theirs(self, bench, calls) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from threading import Barrier
 from typing import Any, TypeVar
 
@@ -14,7 +15,7 @@ from sqlalchemy import text
 from sqlalchemy.event import listens_for
 
 from partwise.errors import ConflictError, StaleDraftError
-from partwise.store.engine import reading
+from partwise.store.engine import reading, writing
 from partwise.store.open import open_catalog
 from partwise.store.records import (
     JobKind,
@@ -28,6 +29,7 @@ from partwise.store.records import (
 )
 from partwise.store.reviews import ReviewReason
 from partwise.store.sql import returns
+from partwise.store.sql.collections import schema_version
 from partwise.store.sql.returns import _instead
 from partwise.store.sql_catalog import SqlCatalog
 from partwise.testing.catalog.confirmations import CLOSE
@@ -212,6 +214,33 @@ def test_a_lost_job_beside_which_another_is_asked_for_right_now_gives_way_to_it(
     (lost,) = postgres_catalog.requeue_lost_jobs(timedelta(hours=-1))
     assert (lost.id, lost.state) == (job.id, JobState.CANCELLED)
     assert f"job {asked[0]} does its work" in lost.progress.message
+
+
+def test_shapes_are_claimed_while_parts_change(postgres_catalog: SqlCatalog) -> None:
+    """In SQLite, whose writers come one after the other, whoever changes parts is short."""
+    collection, _ = ready_shapes(postgres_catalog, 1)
+    ann = postgres_catalog.add_person("ann")
+    with writing(postgres_catalog._engine) as connection:
+        schema_version(connection, collection.id, for_update=True)
+        with ThreadPoolExecutor(1) as threads:
+            claimed = threads.submit(postgres_catalog.claim_next, NewClaim(collection.id, ann.id, 60, 0.5))
+            assert claimed.result(30) is not None
+
+
+def test_who_confirms_and_claims_at_once_is_served_twice(shared: SqlCatalog) -> None:
+    """A page that slept claims its shape by name while what was confirmed last is on its way."""
+    _, shape_ids = ready_shapes(shared, N_THREADS)
+    ann = shared.add_person("ann")
+    for shape_id in shape_ids:
+        lease = shared.claim_shape(shape_id, ann.id, 60)
+        draft = blank_draft(shared, lease)
+        shared.append_strokes(draft.id, ann.id, 0, strokes(draft, 0, 1))
+        shared.release_lease(lease.id, ann.id)
+        new = NewConfirmation(draft.id, ann.id, 1, np.array([1, 1, 1, 2, 2, 2]), 1)
+        found = _at_once([partial(shared.confirm_draft, new), partial(shared.claim_shape, shape_id, ann.id, 60)])
+        assert not [each for each in found if isinstance(each, Exception)]
+        for held in shared.leases_of(ann.id):
+            shared.release_lease(held.id, ann.id)
 
 
 @pytest.mark.parametrize("wrong_by", [timedelta(hours=-1), timedelta(hours=1)])

@@ -9,6 +9,7 @@ from partwise.testing.expect import raises
 from partwise.testing.workspaces import ingest, publish_features, publish_meshes
 from partwise.workspace.embedding_map import embedding_key, read_embedding_map
 from partwise.workspace.first_shapes import select_first_shapes
+from partwise.workspace.light_fields import light_fields
 from partwise.workspace.placed_shapes import place_new_shapes, read_placed
 
 
@@ -88,10 +89,20 @@ def test_the_one_before_is_kept_for_who_reads_it_and_older_ones_are_not(embedded
 
 def test_an_embedding_that_was_replaced_meanwhile_stays(embedded, describe, monkeypatch) -> None:
     describe("new.off", 5)
-    keys = iter([embedding_key(embedded.workspace, embedded.collection), "embeddings/1/x/y.safetensors"])
-    monkeypatch.setattr("partwise.workspace.placed_shapes.embedding_key", lambda *_: next(keys))
-    assert place_new_shapes(embedded.workspace, embedded.collection) == 0
-    assert len(_placed(embedded).shape_ids) == 3
+    workspace, collection = embedded.workspace, embedded.collection
+    before = embedding_key(workspace, collection)
+
+    def fitted_meanwhile(*given):
+        workspace.arrays.put_bytes("embeddings/1/x/y.safetensors", b"another fit")
+        workspace.catalog.set_embedding(collection.id, "embeddings/1/x/y.safetensors")
+        return light_fields(*given)
+
+    monkeypatch.setattr("partwise.workspace.placed_shapes.light_fields", fitted_meanwhile)
+    stored = set(workspace.arrays.list("embeddings"))
+    assert place_new_shapes(workspace, collection) == 0
+    assert embedding_key(workspace, collection) == "embeddings/1/x/y.safetensors"
+    assert set(workspace.arrays.list("embeddings")) == {*stored, "embeddings/1/x/y.safetensors"}
+    assert before in stored
 
 
 def test_one_that_was_stored_without_centres_takes_no_more(embedded) -> None:

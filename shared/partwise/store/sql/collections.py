@@ -86,7 +86,7 @@ def schema_version(
     """
     query = select(t.collection.c.schema_version).where(t.collection.c.id == collection_id)
     if for_update or for_share:
-        query = query.with_for_update(read=not for_update)
+        query = query.with_for_update(read=not for_update, key_share=for_update)  # rows of the collection may be added
     version = connection.execute(query).scalar()
     if version is None:
         raise NotFoundError(f"there is no collection with id {collection_id}")

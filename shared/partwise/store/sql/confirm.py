@@ -38,6 +38,7 @@ _LEASE_S = 60.0  # of a lease that is taken up again to be completed at once
 
 
 def confirm_draft(connection: Connection, new: NewConfirmation, now: datetime) -> Confirmation:
+    name = leases.person_name(connection, new.person_id, for_update=True)  # before the draft, as in claims
     draft = locked_draft(connection, new.draft_id, new.person_id)
     sha256 = _checked_sha256(new.labels)
     if draft.outcome is DraftOutcome.CONFIRMED and draft.labels_sha256 == sha256:
@@ -54,7 +55,6 @@ def confirm_draft(connection: Connection, new: NewConfirmation, now: datetime) -
     if lease is not None:
         events.append(leases.end(connection, lease, LeaseOutcome.COMPLETED, now)[1])
     close_draft(connection, draft.id, DraftOutcome.CONFIRMED, sha256, now, new.cost)
-    name = leases.person_name(connection, draft.person_id)
     detail = {
         "shape_id": draft.shape_id,
         "n_strokes": draft.n_strokes,

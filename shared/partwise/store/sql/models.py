@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, delete, func, insert, select, tuple_
+from sqlalchemy import Connection, Row, delete, func, insert, select, tuple_, update
 
 from partwise.errors import NotFoundError, ParameterError
 from partwise.store import tables as t
@@ -149,12 +149,16 @@ def first_shapes(connection: Connection, collection_id: int) -> Sequence[FirstSh
     return [FirstShape(**row._mapping) for row in connection.execute(query)]
 
 
-def set_embedding(connection: Connection, collection_id: int, key: str, now: datetime) -> None:
+def set_embedding(connection: Connection, collection_id: int, key: str, replacing: str | None, now: datetime) -> bool:
     schema_version(connection, collection_id)
+    if replacing is not None:
+        is_it = (t.embedding.c.collection_id == collection_id) & (t.embedding.c.key == replacing)
+        return connection.execute(update(t.embedding).where(is_it).values(key=key, created_at=now)).rowcount == 1
     statement = insert_for(connection, t.embedding).values(collection_id=collection_id, key=key, created_at=now)
     connection.execute(
         statement.on_conflict_do_update(index_elements=["collection_id"], set_={"key": key, "created_at": now})
     )
+    return True
 
 
 def embedding(connection: Connection, collection_id: int) -> Embedding | None:

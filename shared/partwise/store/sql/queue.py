@@ -110,8 +110,10 @@ def _take(
     is_prefetched: bool = False,
 ) -> Lease | None:
     """A lease of a free, locked place."""
+    is_for_anyone = place.person_id is None  # what is kept for somebody wants their labels, whatever they had before
+    before = _as_before(connection, place, person_id) if is_for_anyone else None
     values = {
-        **(_as_before(connection, place, person_id) or _as_ranked(connection, place)),
+        **(before or _as_ranked(connection, place)),
         "collection_id": place.collection_id,
         "shape_id": place.shape_id,
         "slot": place.slot,

@@ -166,6 +166,8 @@ def reject_labels(
 ) -> Review:
     refuse_unknown_shapes(connection, [shape_id])
     lock_labels(connection, [shape_id])
+    of_shape = select(t.shape.c.collection_id).where(t.shape.c.id == shape_id)
+    schema_version(connection, connection.execute(of_shape).scalar_one(), for_share=True)  # as `locked_review`
     opened = [review for review in reviews(connection, shape_id) if review.resolved_at is None]
     if any(review.reason is ReviewReason.REWORK for review in opened):
         raise ConflictError(f"labels are sent back once but those of shape {shape_id} were already; await better ones")

@@ -63,9 +63,9 @@ class SqlModelCatalog(SqlBase):
         with reading(self._engine) as connection:
             return models.first_shapes(connection, collection_id)
 
-    def set_embedding(self, collection_id: int, key: str) -> None:
+    def set_embedding(self, collection_id: int, key: str, *, replacing: str | None = None) -> bool:
         with writing(self._engine) as connection:
-            models.set_embedding(connection, collection_id, key, self._clock())
+            return models.set_embedding(connection, collection_id, key, replacing, self._clock())
 
     def embedding(self, collection_id: int) -> r.Embedding | None:
         with reading(self._engine) as connection:

@@ -130,3 +130,12 @@ class ModelConformance:
         current = catalog.embedding(collection.id)
         assert current is not None
         assert current.key == "embeddings/2"
+
+    def test_an_embedding_replaces_only_the_one_that_it_was_made_from(self, catalog: Catalog) -> None:
+        collection, _ = add_collection(catalog, 0)
+        assert catalog.set_embedding(collection.id, "embeddings/1")
+        assert not catalog.set_embedding(collection.id, "embeddings/3", replacing="embeddings/2")
+        assert catalog.set_embedding(collection.id, "embeddings/2", replacing="embeddings/1")
+        current = catalog.embedding(collection.id)
+        assert current is not None
+        assert current.key == "embeddings/2"

@@ -426,6 +426,18 @@ class QueueConformance:
         theirs = again(bob)
         assert (theirs.purpose, theirs.score) == (LeasePurpose.LABEL, 0.9)
 
+    def test_a_blind_check_that_was_given_back_is_work_once_the_shape_is_assigned(self, catalog: Catalog) -> None:
+        collection, (known,) = ready_shapes(catalog, 1)
+        catalog.update_collection_settings(collection.id, {"honeypot_share": 0.5})
+        label(catalog, known, RevisionKind.REFERENCE)
+        ann = catalog.list_people()[0]
+        blind = catalog.claim_next(NewClaim(collection.id, ann.id, 60, 0.1))
+        assert blind is not None
+        assert blind.purpose is LeasePurpose.BLIND
+        catalog.release_lease(blind.id, ann.id)
+        catalog.assign_shapes([known], ann.id, ann.id)
+        assert claim(catalog, collection, ann).purpose is LeasePurpose.LABEL
+
     def test_who_did_a_blind_check_labels_the_shape_when_they_ask_for_it(self, catalog: Catalog) -> None:
         collection, (known,) = ready_shapes(catalog, 1)
         catalog.update_collection_settings(collection.id, {"honeypot_share": 1.0})

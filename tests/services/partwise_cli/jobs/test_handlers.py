@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from safetensors.numpy import save
 
-from partwise.store.records import EventKind, JobKind, JobState, NewModel
+from partwise.store.records import EventKind, JobKind, JobState, NewModel, NewRevision, RevisionKind
 from partwise.testing.workspaces import ingest, publish_features, publish_meshes, save_model
 from partwise.workspace.first_shapes import select_first_shapes
 from partwise.workspace.placed_shapes import read_placed
@@ -182,6 +183,30 @@ def test_an_evaluation_goes_on_with_a_newer_model(do, workspace, monkeypatch) ->
     ended = do(JobKind.EVALUATE)
     assert seen == [1, 2]
     assert ended.progress.message == "6 shapes evaluated by model version 2, 0 failed"
+
+
+def test_an_evaluation_begins_with_what_is_most_like_the_newly_confirmed(do, workspace, monkeypatch) -> None:
+    seen = []
+
+    def evaluate(workspace, collection, model, shape_ids, on_progress, on_event, may_go_on) -> RunProgress:
+        seen.extend(shape_ids)
+        on_progress(RunProgress(len(shape_ids), 0, len(shape_ids)))
+        return RunProgress(len(shape_ids), 0, len(shape_ids))
+
+    monkeypatch.setattr(evaluation, "evaluate_in_order", evaluate)
+    collection = workspace.catalog.get_collection("mugs")
+    a, b, c = (shape.id for shape in workspace.catalog.shapes(collection.id))
+    points = np.array([[10.0, 0.0], [0.0, 0.0], [1.0, 0.0]], dtype=np.float32)
+    workspace.arrays.put_bytes("embeddings/x", save({"shape_ids": np.array([a, b, c]), "points": points}))
+    workspace.catalog.set_embedding(collection.id, "embeddings/x")
+    ann, mesh = workspace.catalog.add_person("ann"), workspace.catalog.meshes([c])[c]
+    labels = np.ones(mesh.n_faces, dtype=np.uint16)
+    confirmed = workspace.catalog.add_revision(
+        NewRevision(c, mesh.mesh_hash, RevisionKind.HUMAN, ann.id, collection.schema_version, labels, None)
+    )
+    workspace.catalog.save_model(NewModel(collection.id, {}, "models/x", (confirmed.id,)))
+    assert do(JobKind.EVALUATE).state is JobState.DONE
+    assert seen == [c, b, a]
 
 
 def test_an_evaluation_needs_a_model(do) -> None:
