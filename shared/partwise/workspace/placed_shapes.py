@@ -98,8 +98,7 @@ def place_new_shapes(workspace: Workspace, collection: Collection) -> int:
     )
     with_new_key = _put_placed(workspace, folder, with_new)
     if not workspace.catalog.set_embedding(collection.id, with_new_key, replacing=key):
-        workspace.arrays.delete(with_new_key)
-        return 0
+        return 0  # what was put stays for the next sweep: whoever placed the same meanwhile named the same key
     _sweep(workspace, folder, [f"{folder}/{_EMBEDDING}", key, with_new_key])  # another fit may be on its way beside it
     record_clusters(workspace, collection, shape_ids, nearest_centres(points, placed.centres))
     return len(new)

@@ -90,7 +90,6 @@ def test_the_one_before_is_kept_for_who_reads_it_and_older_ones_are_not(embedded
 def test_an_embedding_that_was_replaced_meanwhile_stays(embedded, describe, monkeypatch) -> None:
     describe("new.off", 5)
     workspace, collection = embedded.workspace, embedded.collection
-    before = embedding_key(workspace, collection)
 
     def fitted_meanwhile(*given):
         workspace.arrays.put_bytes("embeddings/1/x/y.safetensors", b"another fit")
@@ -98,11 +97,24 @@ def test_an_embedding_that_was_replaced_meanwhile_stays(embedded, describe, monk
         return light_fields(*given)
 
     monkeypatch.setattr("partwise.workspace.placed_shapes.light_fields", fitted_meanwhile)
-    stored = set(workspace.arrays.list("embeddings"))
     assert place_new_shapes(workspace, collection) == 0
     assert embedding_key(workspace, collection) == "embeddings/1/x/y.safetensors"
-    assert set(workspace.arrays.list("embeddings")) == {*stored, "embeddings/1/x/y.safetensors"}
-    assert before in stored
+    assert workspace.arrays.get_bytes("embeddings/1/x/y.safetensors") == b"another fit"
+
+
+def test_shapes_that_another_worker_placed_meanwhile_stay_where_they_are(embedded, describe, monkeypatch) -> None:
+    describe("new.off", 5)
+    workspace, collection, n_calls = embedded.workspace, embedded.collection, []
+
+    def placed_meanwhile(*given):
+        n_calls.append(1)
+        if len(n_calls) == 1:
+            assert place_new_shapes(workspace, collection) == 1
+        return light_fields(*given)
+
+    monkeypatch.setattr("partwise.workspace.placed_shapes.light_fields", placed_meanwhile)
+    assert place_new_shapes(workspace, collection) == 0
+    assert len(_placed(embedded).shape_ids) == 4
 
 
 def test_one_that_was_stored_without_centres_takes_no_more(embedded) -> None:
